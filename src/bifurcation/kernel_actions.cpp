@@ -27,6 +27,10 @@ constexpr int shifts_a_harmonic = 12;
 constexpr int newton_steps = 5;
 
 // The element's place among the system's equivariances or reversors; -1: the identity; their number: a product of some.
+/// A kernel that misses a vector, or has a wrong one, is off by a number of order 1 under the symmetries of its orbit;
+/// one that is off by less is the right one, and rounding has its digits.
+constexpr double wrong_kernel = 0.05;
+
 int declared_place(const systems::Structure& structure, const loop::SymmetryElement& element) {
   if (!element.reversing && element.name == "1") return -1;
   const auto& list = element.reversing ? structure.reversors : structure.equivariances;
@@ -149,11 +153,16 @@ KernelActions::KernelActions(const systems::Structure& system, const loop::Loop&
       const Eigen::MatrixXd action = _kernel.transpose() * images;
       const double gap = (images - _kernel * action).norm();
       const double skew = (action.transpose() * action - Eigen::MatrixXd::Identity(n, n)).norm();
-      if (std::max(gap, skew) > options.kernel_tolerance)
-        throw core::NumericalError(
-            fmt::format("the symmetry {} of the orbit does not map its kernel (dimension {}) to itself: off by {:.2g}, "
-                        "isometric to {:.2g}; the kernel is incomplete, inaccurate or not transverse to the time shift",
-                        loop::to_text({element}), n, gap, skew));
+      const double off = std::max(gap, skew);
+      const auto text = [&](const char* why) {
+        return fmt::format(
+            "the symmetry {} of the orbit does not map its kernel (dimension {}) to itself: off by {:.2g}, isometric "
+            "to {:.2g}; {}",
+            loop::to_text({element}), n, gap, skew, why);
+      };
+      if (off > wrong_kernel)
+        throw core::NumericalError(text("the kernel is incomplete, or not transverse to the time shift"));
+      if (off > options.kernel_tolerance) throw UndecidedError(text("the kernel is known no better"));
       _actions.push_back({element, declared, action});
     }
 }

@@ -156,6 +156,15 @@ TEST(Directions, RefuseWhatIsNoKernel) {
   EXPECT_THROW(static_cast<void>(call(crooked, d.kernel)), core::NumericalError);
 }
 
+// As beside a saddle of the energy, where T changes by 1e9 for a change of E by 1.
+TEST(Directions, OfAKernelThatIsKnownToThreeDigitsAreUndecided) {
+  std::vector<loop::Tangent> rough = doubling().kernel;
+  rough[0].modes.back() += 3e-3;
+  const double norm = rough[0].norm();
+  for (double& mode : rough[0].modes) mode /= norm;
+  EXPECT_THROW(static_cast<void>(directions(*test::pendulum(), doubling().base, both(), rough)), UndecidedError);
+}
+
 // On the straight orbits of Henon and Heiles' system both families of order 4 have the reversor R and no other: one is
 // at rest where the crossing's orbit turns at the triangle's side, the other where it turns towards a corner.
 TEST(Directions, TwinsOfOneReversorDoNotHangOnTheStart) {
