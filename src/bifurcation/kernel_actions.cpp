@@ -26,11 +26,11 @@ constexpr double same_vector = 1e-3;  // kernel vectors are good to kernel_toler
 constexpr int shifts_a_harmonic = 12;
 constexpr int newton_steps = 5;
 
-// The element's place among the system's equivariances or reversors; -1: the identity; their number: a product of some.
 /// A kernel that misses a vector, or has a wrong one, is off by a number of order 1 under the symmetries of its orbit;
 /// one that is off by less is the right one, and rounding has its digits.
 constexpr double wrong_kernel = 0.05;
 
+// The element's place among the system's equivariances or reversors; -1: the identity; their number: a product of some.
 int declared_place(const systems::Structure& structure, const loop::SymmetryElement& element) {
   if (!element.reversing && element.name == "1") return -1;
   const auto& list = element.reversing ? structure.reversors : structure.equivariances;
