@@ -7,6 +7,10 @@ import { pause } from './browser.mjs';
 import { checkPage, folder, text } from './checking.mjs';
 
 const references = process.env.ORBWEAVER_PAGE_REFERENCES;
+/** Each theme and the narrowest and a usual width; the long test has all. */
+const [widths, pictures] = process.argv[4] === 'all'
+  ? [[360, 760, 1024, 1280, 1920], [[360, 740, 'light'], [360, 740, 'dark'], [1280, 800, 'light'], [1280, 800, 'dark'], [1920, 1080, 'light'], [1920, 1080, 'dark']]]
+  : [[360, 1280], [[360, 740, 'dark'], [1280, 800, 'light']]];
 
 await checkPage('dark and light, larger text, help and about', 'pendulum', {}, async (page) => {
   const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
@@ -70,7 +74,7 @@ for (const theme of ['light', 'dark'])
     }
   });
 
-for (const width of [360, 760, 1024, 1280, 1920])
+for (const width of widths)
   await checkPage(`nothing overflows or lacks a name at ${width} pixels`, 'pendulum', { width, height: width < 700 ? 740 : 800 }, async (page) => {
     for (const tab of [0, 1, 2]) {
       await page.evaluate((n) => {
@@ -103,7 +107,7 @@ for (const width of [360, 760, 1024, 1280, 1920])
 /** Parts of the pixels that may differ from the reference. With a serif font 1.4 % of a page and 0.2 % of the diagram do; with no curves in
  *  it 1.0 to 1.6 % of the diagram. */
 const mostDifferent = { page: 0.025, diagram: 0.006 };
-for (const [width, height, theme] of [[360, 740, 'light'], [360, 740, 'dark'], [1280, 800, 'light'], [1280, 800, 'dark'], [1920, 1080, 'light'], [1920, 1080, 'dark']])
+for (const [width, height, theme] of pictures)
   await checkPage(`looks as its reference at ${width} pixels, ${theme}`, 'pendulum', { width, height, theme, hash: 'family=In-Phase&step=10' }, async (page) => {
     await pause(300);
     const name = `${width}_${theme}.png`;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh without_node|install|types|pages|browser|bench PROGRAM MAKE_ATLAS SOURCES BUILD FOLDER: one part of the tests of the page; exit status 77
+# run.sh without_node|install|types|pages|browser|browser_all|bench PROGRAM MAKE_ATLAS SOURCES BUILD FOLDER: one part of the tests of the page; exit status 77
 # where what it needs is not installed.
 set -euo pipefail
 part=$1 program=$2 make_atlas=$3 sources=$4 build=$5 folder=$6
@@ -87,12 +87,12 @@ case "$part" in
     "$make_atlas" reduced "$folder/reduced.h5" "$folder/reduced.html"
     "$program" show "$folder/pendulum.h5" orbits --csv >"$folder/pendulum.csv"
     ;;
-  browser)
+  browser | browser_all)
     chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
     [[ -n "$chromium" ]] || { echo "skipped: chromium is not installed (./quickstart test installs it)"; exit 77; }
     [[ -d "$modules/node_modules/puppeteer-core" ]] || { echo "skipped: puppeteer-core could not be fetched"; exit 77; }
     cp "$sources"/tests/page/*.mjs "$modules/"
-    node "$modules/browser_test.mjs" "$chromium" "$folder"
+    node "$modules/browser_test.mjs" "$chromium" "$folder" "${part#browser_}"
     ;;
   bench)
     need chromium

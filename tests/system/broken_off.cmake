@@ -7,11 +7,11 @@ function(broken_off_test name labels seconds script)
   math(EXPR mark "${mark} + 1")
   list(SUBLIST ARGN ${mark} -1 rest)
   # Up to four ranks, which start, end and wait for most of the time; where seconds are counted, nothing else runs.
-  orbweaver_add_ctest(system.${name} 3 "${labels}" ${seconds} "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${first}
+  orbweaver_add_ctest(system.${name} 2 "${labels}" ${seconds} "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${first}
     $<TARGET_FILE:orbweaver> $<TARGET_FILE:compare_archives> "${scene}" "${runs}/system.${name}/work" ${rest})
 endfunction()
 broken_off_test(kills system 300 kills.sh 5 1 -- ${broken})
-broken_off_test(flush_kills system 300 flush_kills.sh 7 -- ${broken})
+broken_off_test(flush_kills system 300 flush_kills.sh 5 -- ${broken})
 broken_off_test(payload_kills system 300 payload_kills.sh -- ${broken})
 broken_off_test(damaged_payload system 120 damaged_payload.sh -- ${broken})
 broken_off_test(stops system 300 stops.sh -- ${broken})
