@@ -459,7 +459,9 @@ Directions searched(const systems::System& system, const KernelActions& group, c
   if (lines.empty() && best.found.empty())
     throw core::NumericalError(seen + "; they form a continuum, or the loss does not tell them apart");
   if ((best.not_isolated > 0 && !constant) || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
-  if (best.not_isolated > 0 && out.doubt.empty()) out.doubt = seen;
+  // Where all that there can be are found, what is not isolated is none of them.
+  const bool are_all = expected > 0 && static_cast<int>(best.found.size()) == expected;
+  if (best.not_isolated > 0 && !are_all && out.doubt.empty()) out.doubt = seen;
   if (constant) {
     out.found = about_equilibrium(system.structure(), group, base, best, amplitude);
     return out;
