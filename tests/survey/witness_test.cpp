@@ -141,8 +141,9 @@ TEST_F(WitnessOf, OneOrbitOfTwoFamilies) {
 }
 
 // Both ends of one curve, followed until they have run past one another: more steps bring each to the other's start.
-TEST_F(WitnessOf, ACurveStoredTwiceForWantOfSteps) {
+TEST_F(WitnessOf, ACurveStoredTwiceForWantOfStepsOrDigits) {
   const std::string out_of_steps = "step limit";
+  const std::string out_of_digits = "undecided (an index is 2 to rounding)";
   const auto said_of = [&](const std::string& end, const std::string& other_end) {
     input = {};
     if (world->is_root()) {
@@ -160,11 +161,16 @@ TEST_F(WitnessOf, ACurveStoredTwiceForWantOfSteps) {
   };
   const Testimony both = said_of(out_of_steps, out_of_steps);
   const Testimony one = said_of(out_of_steps, "");
+  const Testimony hidden = said_of(out_of_digits, out_of_digits);
+  const Testimony one_hidden = said_of(out_of_digits, "");
   EXPECT_EQ(both.wrong, 0U) << "on every rank";
+  EXPECT_EQ(hidden.wrong, 0U);
+  EXPECT_EQ(one_hidden.wrong, 1U);
   EXPECT_EQ(one.wrong, 1U);
   if (!world->is_root()) return;
   EXPECT_THAT(both.records, ElementsAre(finding("cut", "duplicate-curve")));
   EXPECT_THAT(one.records, ElementsAre(finding("contradiction", "duplicate-curve")));
+  EXPECT_THAT(hidden.records, testing::Contains(finding("undecided", "duplicate-curve")));
 }
 
 TEST_F(WitnessOf, ACurveThatTurnsBackOnItself) {

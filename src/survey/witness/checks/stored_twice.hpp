@@ -108,15 +108,19 @@ class StoredTwice final : public Check {
     });
   }
 
-  // Two ends of one curve that have run past one another: with more steps one comes to where the other begins.
-  static bool is_cut(const Evidence& evidence, const Pair& pair) {
-    return pair.first != pair.second && is_out_of_steps(evidence.family(pair.first)) &&
-           is_out_of_steps(evidence.family(pair.second));
+  // Two ends of one curve that have run past one another: with more steps, or where rounding leaves it, one comes to
+  // where the other begins.
+  static bool both_end_by(const Evidence& evidence, const Pair& pair, EndKind kind) {
+    const auto ends_by = [&](int row) {
+      const std::vector<FamilyEnd>& ends = evidence.family(row).ends;
+      return std::any_of(ends.begin(), ends.end(), [&](const FamilyEnd& end) { return end.kind == kind; });
+    };
+    return pair.first != pair.second && ends_by(pair.first) && ends_by(pair.second);
   }
 
-  static bool is_out_of_steps(const TreeFamily& family) {
-    return std::any_of(family.ends.begin(), family.ends.end(),
-                       [](const FamilyEnd& end) { return end.kind == EndKind::step_limit; });
+  static Severity severity_of(const Evidence& evidence, const Pair& pair, bool is_told) {
+    if (both_end_by(evidence, pair, EndKind::step_limit)) return Severity::cut;
+    return is_told && !both_end_by(evidence, pair, EndKind::undecided) ? Severity::contradiction : Severity::undecided;
   }
 
   // Whether a crossing that one of the two lies on, is born at or ends at is this orbit.
@@ -166,7 +170,7 @@ class StoredTwice final : public Check {
     finding.kind = pair.first == pair.second ? FindingKind::retraced_curve : FindingKind::duplicate_curve;
     const bool is_told = same >= static_cast<std::ptrdiff_t>(least_hits) ||
                          (same == 1 && pair.first != pair.second && !has_crossing_at(evidence, pair, x));
-    finding.severity = is_cut(evidence, pair) ? Severity::cut : is_told ? Severity::contradiction : Severity::undecided;
+    finding.severity = severity_of(evidence, pair, is_told);
     finding.family = pair.first;
     finding.other_family = pair.first == pair.second ? -1 : pair.second;
     finding.period = x.value(Invariant::period);
