@@ -47,8 +47,10 @@ std::optional<VectorXd> double_branch_point_between(const CurveEquations& curve,
   const int change = positive_real(curve.eigenvalues(b.x)) - positive_real(curve.eigenvalues(a.x));
   if (change == 0 || change % 2 != 0) return std::nullopt;
   const auto least = [&](const VectorXd& at) { return least_real_eigenvalue(curve, at); };
-  for (const CurveNode* node : {&a, &b})
-    if (std::abs(least(node->x)) <= at_end * curve.eigenvalues(node->x).cwiseAbs().maxCoeff()) return node->x;
+  const auto vanishes = [&](const VectorXd& at) {
+    return std::abs(least(at)) <= at_end * curve.eigenvalues(at).cwiseAbs().maxCoeff();
+  };
+  if (vanishes(a.x) != vanishes(b.x)) return vanishes(a.x) ? a.x : b.x;  // at both it may be zero all along
   if (!(least(a.x) * least(b.x) < 0.0)) return std::nullopt;  // two have met and left the axis, or come to it
   return zero_beside_curve(curve, a, b, least);
 }

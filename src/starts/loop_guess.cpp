@@ -23,7 +23,7 @@ constexpr std::size_t samples_of_spline = 4 * static_cast<std::size_t>(loop::tim
 /// Of a guess's harmonics, relative to its size: smaller ones are left out.
 constexpr double left_out = 1e-9;
 /// And those that are this part of what the trajectory misses itself by: its kink has harmonics without end, which no
-/// orbit near it has. Kept, they take many steps of a branch to go (K from 787 to 157 in six).
+/// orbit near it has. Kept, they take many steps of a branch to go.
 constexpr double left_out_of_gap = 1e-3;
 /// Of the period: a state so near to a whole one after the first closes the loop (decimal digits of a table).
 constexpr double same_time = 1e-6;
