@@ -95,18 +95,23 @@ class EventFunction {
       : _system(system), _family(family), _event(event), _within(within) {}
 
   double operator()(double position) {
-    const auto known = _values.find(position);
-    if (known != _values.end()) return known->second;
-    const bool is_birth = _event.from_birth && position == _within.from;
-    const std::optional<Crossing> there = at(position, false, is_birth);
-    const double value = there ? there->reading.value : nan;
-    if (!is_birth && !(std::abs(value) >= std::abs(_nearest_value))) {
-      _nearest_value = value;
-      _nearest_position = position;
-      _nearest_stability = there ? std::optional(there->stability) : std::nullopt;
-    }
-    if (!std::isnan(value)) _values[position] = value;  // without one it says why each time that it is asked
-    return value;
+    const auto known = _known.find(position);
+    if (known != _known.end()) return known->second.value;
+    const std::optional<Crossing> there = at(position, false, is_birth(position));
+    if (!there) return nan;  // it says why each time that it is asked
+    _known[position] = {there->reading.value, there->stability};
+    return there->reading.value;
+  }
+
+  /// How far the nearest index is from the sector's value at a place where the function is known; 0 of other functions.
+  [[nodiscard]] double size_at(double position) const {
+    if (_event.kind != Event::Kind::test_function || _event.is_parted || !has_sector(_event.function.kind)) return 0.0;
+    return std::abs(index_deviation(_system.structure(), _known.at(position).stability, _event.function.sector).value);
+  }
+
+  /// The function over indices up to `size` at a place where it is known (`value_over`).
+  [[nodiscard]] double known_over(double position, double size) const {
+    return value_over(_event.function, _system.structure(), _known.at(position).stability, size);
   }
 
   /// How far the function's error at a zero may move it: the slope is taken to the nearest value that is told.
@@ -115,10 +120,10 @@ class EventFunction {
     if (!zero || !(zero->reading.error > 0.0)) return 0.0;
     double away = std::numeric_limits<double>::infinity();
     double slope = 0.0;
-    for (const auto& [other, value] : _values)
-      if (std::abs(value) > told * zero->reading.error && std::abs(other - position) < away) {
+    for (const auto& [other, there] : _known)
+      if (std::abs(there.value) > told * zero->reading.error && std::abs(other - position) < away) {
         away = std::abs(other - position);
-        slope = std::abs(value) / away;
+        slope = std::abs(there.value) / away;
       }
     return zero->reading.error / slope;
   }
@@ -136,9 +141,9 @@ class EventFunction {
   /// Why the function had no value where it was asked for last without one.
   [[nodiscard]] const std::optional<NotLocated>& without_value() const { return _without_value; }
 
-  /// `whole`: with the tangent and the multipliers also where the function does not need them. `is_birth`: with what is
-  /// known of the index at a birth.
-  std::optional<Crossing> at(double position, bool whole = false, bool is_birth = false) {
+  /// `whole`: with the tangent and the multipliers also where the function does not need them. `tells_birth`: with what
+  /// is known of the index at a birth.
+  std::optional<Crossing> at(double position, bool whole = false, bool tells_birth = false) {
     const bool fold = _event.kind != Event::Kind::test_function;
     std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
     std::optional<Reading> slope_between;
@@ -154,9 +159,9 @@ class EventFunction {
     if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
     Crossing out;
     out.point = std::move(*point);
-    const bool is_known = !fold && !is_birth && position == _nearest_position && _nearest_stability.has_value();
-    if (is_known) out.stability = *_nearest_stability;
-    if (!is_known && (whole || !fold)) try {
+    const auto known = fold || is_birth(position) ? _known.end() : _known.find(position);
+    if (known != _known.end()) out.stability = known->second.stability;
+    if (known == _known.end() && (whole || !fold)) try {
         spectrum::FloquetOptions options;
         options.team = _family.options().corrector.team;
         out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
@@ -164,7 +169,7 @@ class EventFunction {
         if (_event.kind == Event::Kind::test_function)
           return without_value(NotLocated::Reason::no_multipliers, position, out.point.loop.period, error.what());
       }
-    if (is_birth) tell_birth(_system.structure(), out.stability);
+    if (tells_birth) tell_birth(_system.structure(), out.stability);
     if (_event.kind == Event::Kind::test_function)
       out.reading = _event.is_parted ? determinant_deviation(_system.structure(), out.stability, _event.function.sector)
                                      : evaluate(_event.function, _system.structure(), out.stability);
@@ -189,15 +194,19 @@ class EventFunction {
     return period;
   }
 
+  [[nodiscard]] bool is_birth(double position) const { return _event.from_birth && position == _within.from; }
+
+  /// Of test functions with the stability that it follows from.
+  struct Known {
+    double value;
+    spectrum::Stability stability;
+  };
+
   const systems::System& _system;
   continuation::FamilyCurve& _family;
   const Event& _event;
   Interval _within;
-  std::map<double, double> _values;  // by position
-  // Where it was nearest to zero: in the end, at the zero.
-  double _nearest_value = std::numeric_limits<double>::infinity();
-  double _nearest_position = nan;
-  std::optional<spectrum::Stability> _nearest_stability;
+  std::map<double, Known> _known;  // by position
   std::optional<NotLocated> _without_value;
 };
 
@@ -268,16 +277,25 @@ std::optional<numerics::Located> extremum(const systems::System& system, continu
   return std::nullopt;
 }
 
-/// Values that move the place by less than a share of `tolerance` are zero.
+/// Values that move the place by less than a share of `tolerance` are zero. Where indices are large at both ends the
+/// search goes by the function over such indices; where that leads to a place without an orbit, by the function.
 std::optional<numerics::Located> root_of(EventFunction& function, const Interval& within, double tolerance) {
   const auto [from, to] = within;
   const double at_from = function(from);
-  const double no_more = negligible * tolerance * std::abs(function(to) - at_from) / (to - from);
-  const auto along = [&](double position) {
-    const double value = function(position);
-    return std::abs(value) <= no_more ? 0.0 : value;
+  const double at_to = function(to);
+  if (std::isnan(at_from) || std::isnan(at_to)) return std::nullopt;
+  const double no_more = negligible * tolerance * std::abs(at_to - at_from) / (to - from);
+  const auto search = [&](double size) {
+    const auto along = [&](double position) {
+      const double value = function(position);
+      if (std::abs(value) <= no_more) return 0.0;
+      return size > 0.0 && !std::isnan(value) ? function.known_over(position, size) : value;
+    };
+    return numerics::locate_root(along, from, to, tolerance);
   };
-  return numerics::locate_root(along, from, to, tolerance);
+  const double size = std::min(function.size_at(from), function.size_at(to));
+  const std::optional<numerics::Located> root = search(size);
+  return root || !(size > 0.0) ? root : search(0.0);
 }
 
 bool has_determinant(const systems::System& system, const Event& event) {

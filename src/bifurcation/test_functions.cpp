@@ -141,6 +141,12 @@ Reading evaluate(const TestFunction& function, const systems::Structure& system,
   return reading;
 }
 
+double value_over(const TestFunction& function, const systems::Structure& system, const spectrum::Stability& stability,
+                  double size) {
+  const Rule& rule = checked_rule(function, system);
+  return signed_mean(rule.factors_over(system, function.sector, indices_of(system, stability), size)).value;
+}
+
 double zeros_passed(const TestFunction& function, const systems::Structure& system,
                     const spectrum::Stability& stability) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

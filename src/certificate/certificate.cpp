@@ -79,9 +79,16 @@ class Certifier::Parts {
     for (const loop::SymmetryElement& element : _group.elements()) shifts = std::lcm(shifts, element.shift_denominator);
     _segments = (options.segments + shifts - 1) / shifts * shifts;
     for (int m = 0; m < _segments; ++m) _sources.push_back({m, nullptr});
+    std::vector<bool> is_image(static_cast<std::size_t>(_segments), false);
     for (const loop::SymmetryElement& element : _group.elements())
-      for (int m = 0; m < _segments && !element.reversing; ++m)
-        if (Source& source = _sources[image_of(element, m)]; m < source.segment) source = {m, &element.map.matrix};
+      for (int m = 0; m < _segments; ++m) {
+        const std::size_t image = image_of(element, element.reversing ? m + 1 : m);
+        is_image[image] = is_image[image] || static_cast<std::size_t>(m) < image;
+        if (element.reversing) continue;
+        if (Source& source = _sources[image]; m < source.segment) source = {m, &element.map.matrix};
+      }
+    for (std::size_t m = 0; m < is_image.size(); ++m)
+      if (!is_image[m] || _options.level == Level::full) _by_series.push_back(m);
     if (const auto* formulas = dynamic_cast<const systems::FormulaSystem*>(&system)) {
       taylor::FlowOptions flow;
       flow.digits = taylor_digits;
@@ -176,10 +183,11 @@ class Certifier::Parts {
     return ends;
   }
 
-  /// None where the series fail, or there are none.
+  /// Of the segments that go by series. None where the series fail, or there are none.
   [[nodiscard]] std::optional<States> taylor_ends() {
     if (!_taylor) return std::nullopt;
-    States ends = starts();
+    States ends;
+    for (const std::size_t m : _by_series) ends.push_back(_states[m]);
     try {
       _taylor->advance(ends, step());
     } catch (const core::NumericalError&) {
@@ -212,10 +220,15 @@ class Certifier::Parts {
     _taylor_gaps = _gaps;
     const std::optional<States> series = taylor_ends();
     if (!series) return;
-    _taylor_gaps = gaps_of(*series);
-    found.taylor_closure = largest(_taylor_gaps);
+    found.taylor_closure = 0.0;
     found.apart = 0.0;
-    for (std::size_t m = 0; m < ends.size(); ++m) found.apart = std::max(found.apart, distance(ends[m], (*series)[m]));
+    for (std::size_t n = 0; n < series->size(); ++n) {
+      const std::size_t m = _by_series[n];
+      const State& end = (*series)[n];
+      _taylor_gaps[m] = vector_of(_states[m + 1]) - vector_of(end);
+      found.taylor_closure = std::max(found.taylor_closure, _taylor_gaps[m].norm());
+      found.apart = std::max(found.apart, distance(ends[m], end));
+    }
   }
 
   // Closure once around, and how much an error grows on the way where that is far off. NaN where the orbit is so
@@ -225,7 +238,9 @@ class Certifier::Parts {
     try {
       const State end = integrate(_system, _states.front(), _loop->period, _options.tolerance);
       found.single_shot = distance(end, _states.back());
-      if (!(found.single_shot > far_return * found.reach)) return;
+      // What is known may explain the return, or leave it open: other growth then decides nothing (verdict.cpp).
+      const double known = far_return * std::fmax(1.0, known_growth);
+      if (!(found.single_shot > known * found.reach) || known >= nearby) return;
       double largest = unknown;
       for (const State& direction : displacements()) {
         const double length = norm(direction);
@@ -236,7 +251,7 @@ class Certifier::Parts {
         largest = std::fmax(largest, distance(other, end) / (displaced * found.reach));
       }
       found.displaced_growth = largest;
-      // Where what is known explains the return the way costs half a certificate for nothing.
+      // Where this explains the return the way costs half a certificate for nothing.
       const double explained = far_return * found.reach * (1.0 + std::fmax(largest, known_growth));
       if (found.single_shot > explained)
         found.displaced_growth = std::fmax(largest, growth_on_the_way(displaced * found.reach));
@@ -457,6 +472,7 @@ class Certifier::Parts {
   Options _options;
   int _segments = 1;
   std::vector<Source> _sources;
+  std::vector<std::size_t> _by_series;  // of segments that are images of one another one; all where matrices are asked
   std::optional<systems::Formulas> _formulas;
   std::optional<taylor::ManyFlows> _taylor;
   const loop::Loop* _loop = nullptr;

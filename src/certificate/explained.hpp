@@ -12,4 +12,7 @@ inline constexpr double unexplained = 1e3;
 /// Of |H|: what summing its terms leaves, however small the orbit is. Measured: up to 2 eps at amplitudes of 1e-7.
 inline constexpr double energy_roundings = 32.0 * std::numeric_limits<double>::epsilon();
 
+/// Of |z|: an error that has grown to more goes anywhere, and a return says nothing.
+inline constexpr double nearby = 0.1;
+
 }  // namespace orbweaver::certificate

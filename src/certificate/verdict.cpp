@@ -14,8 +14,6 @@ namespace {
 constexpr double of_both = 2.0;
 /// Of the amplitude: fewer digits than four confirm no orbit.
 constexpr double informative = 1e-4;
-/// Of the largest state: an error that has grown to more goes anywhere, and a return says nothing.
-constexpr double nearby = 0.1;
 /// Of the product of the multipliers, and of an index relative to 1 + |k| beside its bound: transition matrices are
 /// integrated to 1e-10 of 1 + their entries.
 constexpr double unpaired_by = 1e-6;

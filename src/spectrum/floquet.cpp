@@ -49,6 +49,9 @@ constexpr double share_of_tolerance = 0.2;
 constexpr double order_of_long_steps = 16.0;
 /// A long segment is as exact as two to three short ones.
 constexpr int short_segments_a_long_one = 3;
+/// Truncation that is estimated as this share of rounding's bound, or less, is fine enough: between large indices one
+/// near 0 has errors that no segments make small.
+constexpr double share_of_rounding = 0.1;
 /// From so many coordinates on products of matrices are most of the cost, of which long segments need more, and a team
 /// divides short ones.
 constexpr int many_coordinates = 8;
@@ -274,6 +277,11 @@ struct Integrated {
     return is_single_pair(structure, flow) ? trace.estimate / (1.0 + std::abs(indices.fundamental[0]))
                                            : largest_relative(stability.fundamental, stability.fundamental_error);
   }
+
+  /// Of a single pair.
+  [[nodiscard]] bool is_left_to_rounding() const {
+    return trace.rounding > 0.0 && trace.estimate <= share_of_rounding * trace.rounding;
+  }
 };
 
 /// The values' response to the orbit's own error, on a scale where differences keep their digits.
@@ -306,7 +314,7 @@ std::optional<Integrated> integrated_by_long_segments(const systems::System& sys
     result.segments = std::make_unique<HermiteChain>(system, loop, group, least);
     result.chain = result.segments->chain();
     const double error = result.evaluate(system, loop, group, nullptr);
-    if (error <= tolerance) return result;
+    if (error <= tolerance || result.is_left_to_rounding()) return result;
     least = finer_segments(result.chain, group.order, error, tolerance, order_of_long_steps);
   }
   return {};
@@ -323,7 +331,7 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
   for (int refinement = 0;; ++refinement) {
     result.chain = make_chain(system, stepper, loop, group, least, team);
     const double error = result.evaluate(system, loop, group, team);
-    if (error <= options.tolerance || refinement >= options.refinements) return result;
+    if (error <= options.tolerance || result.is_left_to_rounding() || refinement >= options.refinements) return result;
     least = finer_segments(result.chain, group.order, error, options.tolerance, order_of_steps);
   }
 }

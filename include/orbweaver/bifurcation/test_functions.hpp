@@ -74,6 +74,12 @@ struct TestFunction {
 [[nodiscard]] Reading evaluate(const TestFunction& function, const systems::Structure& system,
                                const spectrum::Stability& stability);
 
+/// The function with `size` in place of the 2 (dissipative: 1) of a sector's denominator, where it is larger: of the
+/// same sign and zeros. Between orbits of indices of -1e13 and 1e13 the function is a step, which a search for its zero
+/// can only halve; this one, for 1e13, is nearly linear.
+[[nodiscard]] double value_over(const TestFunction& function, const systems::Structure& system,
+                                const spectrum::Stability& stability, double size);
+
 /// How many zeros of the function a family has passed whose multiplier has turned so far (`Stability::turns`), but for
 /// a constant. Of several pairs that are no complex quadruplet: how many indices are above the place, which changes by
 /// as many as pass it upwards more than downwards. NaN where that is not known: of functions without a sector, for

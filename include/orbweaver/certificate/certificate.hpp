@@ -29,9 +29,11 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// What an independent integrator says of one loop. Distances are Euclidean in the coordinates of phase space; an angle
 /// that turns n times is expected to have grown by 2 pi n after a period. NaN: not computed, or not for such a system.
 struct Certificate {
-  double closure = unknown;         ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
-  double taylor_closure = unknown;  ///< the same by Taylor series (taylor/flow.hpp), which share the field only
-  double apart = unknown;           ///< the largest distance of the two integrators' ends: what either may be wrong by
+  double closure = unknown;  ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
+  /// The same by Taylor series (taylor/flow.hpp), which share the field only; up to Level::closure over one of those
+  /// segments each that the isotropy makes images of one another.
+  double taylor_closure = unknown;
+  double apart = unknown;  ///< the largest distance of the two integrators' ends there: what either may be wrong by
   double beside_flow = unknown;  ///< the closure but for what a wrong period explains: gaps along the field, all alike
   /// |z(T) - Phi_T(z(0))|: once around without help; grows with the largest multiplier; NaN if that fails.
   double single_shot = unknown;
@@ -42,8 +44,9 @@ struct Certificate {
   double tail = unknown;             ///< loop::tail
   double reach = 0.0;                ///< largest |z(t_m)|
   /// How many times farther than at its start a displacement is once around, where the orbit returns so far off that it
-  /// matters: one along dH/dz, or, where nothing is conserved, that of the coordinates which grows most; where that
-  /// and the known growth do not explain the return, from whichever of the instants t_m to the end.
+  /// matters, and farther than the known growth explains: one along dH/dz, or, where nothing is conserved, that of the
+  /// coordinates which grows most; where that and the known growth do not explain the return, from whichever of the
+  /// instants t_m to the end.
   double displaced_growth = unknown;
   double steepness = 0.0;    ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
   double energy_size = 0.0;  ///< largest |H(z(t_m))|, of which its rounding is a part

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "test_functions/rule.hpp"
 
 namespace orbweaver::bifurcation {
@@ -15,7 +17,11 @@ class InSector final : public Rule {
   }
   [[nodiscard]] std::vector<Bounded> factors(const systems::Structure& system, const Sector& sector,
                                              const std::vector<Bounded>& indices) const override {
-    const double scale = system.symplectic ? 2.0 : 1.0;
+    return factors_over(system, sector, indices, 0.0);
+  }
+  [[nodiscard]] std::vector<Bounded> factors_over(const systems::Structure& system, const Sector& sector,
+                                                  const std::vector<Bounded>& indices, double size) const override {
+    const double scale = std::max(system.symplectic ? 2.0 : 1.0, size);
     const double c = system.symplectic ? sector.index() : 0.5 * sector.index();
     std::vector<Bounded> out;
     for (const Bounded& index : indices) out.push_back(scaled(index, c, scale));

@@ -32,6 +32,13 @@ class Rule {
   /// Each within [-1, 1], and of one sign where the indices are apart from what the function is for.
   [[nodiscard]] virtual std::vector<Bounded> factors(const systems::Structure& system, const Sector& sector,
                                                      const std::vector<Bounded>& indices) const = 0;
+  /// The same with factors that are within [-0.5, 0.5] for indices up to `size`, which is larger than theirs near a
+  /// zero: of the same signs, and nearly linear where those above are -1 or 1 all the way to it. Those above for a kind
+  /// that has none.
+  [[nodiscard]] virtual std::vector<Bounded> factors_over(const systems::Structure& system, const Sector& sector,
+                                                          const std::vector<Bounded>& indices, double /*size*/) const {
+    return factors(system, sector, indices);
+  }
   /// Whether a zero is what the function is for, none where error bounds leave that open; `tangency`: it touches zero
   /// there.
   [[nodiscard]] virtual std::optional<bool> is_event(const std::vector<Bounded>& /*indices*/,
