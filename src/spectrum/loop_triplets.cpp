@@ -282,11 +282,6 @@ void find_flat(Inverse& inverse, std::vector<Triplet>& found, int count) {
 constexpr int most_cleanings = 12;
 constexpr double cleaned = 0.7;
 
-/// Of the vectors beside flat ones that are found, and of the solves for them: values, which are all that is asked of
-/// them, are right to the square, 1e-8.
-constexpr double of_others = 1e-4;
-constexpr double solves_of_others = 1e-5;
-
 // Looks for `count` more triplets beside those found, and adds at least one.
 void search(Inverse& inverse, std::vector<Triplet>& found, int count, double tolerance) {
   const std::size_t before = found.size();
@@ -364,14 +359,7 @@ SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equa
 
   std::vector<Triplet> found;
   const auto wanted = static_cast<std::size_t>(options.count);
-  double tolerance = options.tolerance;
-  if (options.nearly_flat > 0) {
-    find_flat(inverse, found, options.nearly_flat);
-    if (static_cast<int>(found.size()) == options.nearly_flat) {
-      tolerance = std::max(tolerance, of_others);
-      inverse.accuracy = {std::max(options.inner_tolerance, solves_of_others), 1.0, inverse.accuracy.of_solution};
-    }
-  }
+  if (options.nearly_flat > 0) find_flat(inverse, found, options.nearly_flat);
   // A search finds the smallest values of what is left, multiple ones once: nothing smaller is missing where the last
   // value that it found is no smaller than those that are wanted.
   bool complete = false;
@@ -379,7 +367,7 @@ SingularTriplets smallest_singular_triplets(const equations::LoopEquations& equa
   while (found.size() < wanted || (!complete && static_cast<int>(found.size()) < free)) {
     const int missing = found.size() < wanted ? static_cast<int>(wanted - found.size()) : 1;
     try {
-      search(inverse, found, missing, tolerance);
+      search(inverse, found, missing, options.tolerance);
     } catch (const core::NumericalError&) {
       if (is_raised || found.empty()) throw;
       raise_found(inverse, found);
