@@ -87,8 +87,10 @@ class Certifier::Parts {
         if (element.reversing) continue;
         if (Source& source = _sources[image]; m < source.segment) source = {m, &element.map.matrix};
       }
-    for (std::size_t m = 0; m < is_image.size(); ++m)
-      if (!is_image[m] || _options.level == Level::full) _by_series.push_back(m);
+    std::vector<std::size_t> images;
+    for (std::size_t m = 0; m < is_image.size(); ++m) (is_image[m] ? images : _by_series).push_back(m);
+    _distinct = _by_series.size();
+    if (_options.level == Level::full) _by_series.insert(_by_series.end(), images.begin(), images.end());
     if (const auto* formulas = dynamic_cast<const systems::FormulaSystem*>(&system)) {
       taylor::FlowOptions flow;
       flow.digits = taylor_digits;
@@ -226,6 +228,7 @@ class Certifier::Parts {
       const std::size_t m = _by_series[n];
       const State& end = (*series)[n];
       _taylor_gaps[m] = vector_of(_states[m + 1]) - vector_of(end);
+      if (n >= _distinct) continue;
       found.taylor_closure = std::max(found.taylor_closure, _taylor_gaps[m].norm());
       found.apart = std::max(found.apart, distance(ends[m], end));
     }
@@ -472,7 +475,9 @@ class Certifier::Parts {
   Options _options;
   int _segments = 1;
   std::vector<Source> _sources;
-  std::vector<std::size_t> _by_series;  // of segments that are images of one another one; all where matrices are asked
+  // Of segments that are images of one another one each, so many; behind them, where Newton's method asks, the others.
+  std::vector<std::size_t> _by_series;
+  std::size_t _distinct = 0;
   std::optional<systems::Formulas> _formulas;
   std::optional<taylor::ManyFlows> _taylor;
   const loop::Loop* _loop = nullptr;

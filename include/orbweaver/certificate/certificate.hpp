@@ -30,8 +30,8 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// that turns n times is expected to have grown by 2 pi n after a period. NaN: not computed, or not for such a system.
 struct Certificate {
   double closure = unknown;  ///< largest |z(t_m+1) - Phi(z(t_m))| over the segments, z being the loop
-  /// The same by Taylor series (taylor/flow.hpp), which share the field only; up to Level::closure over one of those
-  /// segments each that the isotropy makes images of one another.
+  /// The same by Taylor series (taylor/flow.hpp), which share the field only, over one each of the segments that the
+  /// isotropy makes images of one another.
   double taylor_closure = unknown;
   double apart = unknown;  ///< the largest distance of the two integrators' ends there: what either may be wrong by
   double beside_flow = unknown;  ///< the closure but for what a wrong period explains: gaps along the field, all alike
