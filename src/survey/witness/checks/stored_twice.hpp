@@ -154,6 +154,21 @@ class StoredTwice final : public Check {
     return before <= 0 && behind <= 0 && before + behind < 0;
   }
 
+  /// Whether the orbit and those two that it lies between are beside the crossing of its family at which theirs is born,
+  /// no further from it than the two are from one another. Period and level are nearly the same on both families there,
+  /// and between images of one another, across the crossing, no orbit may converge.
+  static bool is_beside_birth(const Evidence& evidence, const LoopQuestion& question) {
+    const TreeFamily& born = evidence.family(question.beside);
+    if (born.crossing < 0 || evidence.crossing(born.crossing).family != question.family) return false;
+    const auto segment = static_cast<std::size_t>(question.segment);
+    const double before = born.arclengths[segment];
+    const double behind = born.arclengths[segment + 1];
+    const double own = evidence.family(question.family).arclengths[static_cast<std::size_t>(question.orbit)];
+    const double place = evidence.tree.atlas.crossings().reals("arclength")[static_cast<std::size_t>(born.crossing)];
+    const double away = std::max({before - born.birth_arclength, born.birth_arclength - behind, std::abs(own - place)});
+    return away <= behind - before;
+  }
+
   static void judge(const Evidence& evidence, const Pair& pair, std::span<const Answered> answered,
                     std::vector<Finding>& found) {
     const auto is_same = [](const Answered& a) { return a.reply.same; };
@@ -161,7 +176,9 @@ class StoredTwice final : public Check {
     const bool any_decided = std::any_of(answered.begin(), answered.end(), [&](const Answered& a) {
       return a.reply.decided || is_told_apart(evidence, a.question);
     });
-    if (same == 0 && any_decided) return;
+    const bool all_beside_birth = std::all_of(answered.begin(), answered.end(),
+                                              [&](const Answered& a) { return is_beside_birth(evidence, a.question); });
+    if (same == 0 && (any_decided || all_beside_birth)) return;
     const auto first = std::find_if(answered.begin(), answered.end(), is_same);
     const Answered& shown = first == answered.end() ? answered.front() : *first;
     const Invariants& x =
