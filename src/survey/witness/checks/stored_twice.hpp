@@ -154,9 +154,9 @@ class StoredTwice final : public Check {
     return before <= 0 && behind <= 0 && before + behind < 0;
   }
 
-  /// Whether the orbit and those two that it lies between are beside the crossing of its family at which theirs is born,
-  /// no further from it than the two are from one another. Period and level are nearly the same on both families there,
-  /// and between images of one another, across the crossing, no orbit may converge.
+  /// Whether the orbit and those two that it lies between are beside the crossing of its family at which theirs is
+  /// born, no further from it than the two are from one another. Period and level are nearly the same on both families
+  /// there, and between images of one another, across the crossing, no orbit may converge.
   static bool is_beside_birth(const Evidence& evidence, const LoopQuestion& question) {
     const TreeFamily& born = evidence.family(question.beside);
     if (born.crossing < 0 || evidence.crossing(born.crossing).family != question.family) return false;
