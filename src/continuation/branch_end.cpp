@@ -8,6 +8,7 @@
 
 #include "least_guard.hpp"
 #include "limit_orbit.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
@@ -89,13 +90,15 @@ int guard_number(const systems::Structure& structure, const std::string& name) {
 
 /// Neither T nor the amplitude can be further apart than the loops are. Orbits around one equilibrium are near each
 /// other by their size alone.
-bool may_have_come_back(const Frontier& frontier, double near, const loop::Loop& loop, double amplitude) {
+bool may_have_come_back(const Frontier& frontier, const loop::Loop& loop, double amplitude) {
+  if (frontier.orbit.step < first_orbits) return false;
   const double extent = extent_of(loop.winding, amplitude);
   const double first = extent_of(frontier.first.winding, frontier.first_amplitude);
-  return frontier.orbit.step >= first_orbits && way_around * near < frontier.orbit.arclength &&
-         near < by_size * std::min(extent, first) &&
-         std::abs(loop.period - frontier.first.period) < near * frontier.first.period &&
-         std::abs(extent - first) < near;
+  const double most = std::min(frontier.orbit.arclength / way_around, by_size * std::min(extent, first));
+  const double least = std::max(std::abs(loop.period / frontier.first.period - 1.0), std::abs(extent - first));
+  if (!(least < most)) return false;  // without a distance between loops, which costs as much as a corrector's step
+  const double near = arclength_between(frontier.orbit.loop, loop);
+  return least < near && near < most;
 }
 
 /// By samples in time. A mean over time counts what passes fast for less than one over s, by the density at most.

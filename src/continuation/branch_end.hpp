@@ -20,8 +20,8 @@ inline constexpr double period_window = 1.1;
 /// clearly (docs/mathematics.md, "Ends").
 inline constexpr std::size_t earlier_guards = 5;
 
-/// A cheap look: whether a loop of the branch may lie within `near` of its first orbit, all around a circle.
-[[nodiscard]] bool may_have_come_back(const Frontier& frontier, double near, const loop::Loop& loop, double amplitude);
+/// A cheap look: whether the branch's next loop may lie within a step of its first orbit, all around a circle.
+[[nodiscard]] bool may_have_come_back(const Frontier& frontier, const loop::Loop& loop, double amplitude);
 
 /// Another, dearer: whether no time shift of the first orbit lies on the step to `loop`, or less than this part of the
 /// step's length beside it. `step`: its squared length, a mean over s.

@@ -328,8 +328,7 @@ double Tracer::length_to_try() {
 /// Of a branch that comes back to its first orbit on a step of `length` to `trial`: that orbit, where its last one is
 /// to lie. Between them nothing would be looked for, and beyond it everything twice.
 std::optional<Trial> Tracer::closing_orbit(const Trial& trial, double length) {
-  if (!may_have_come_back(_frontier, arclength_between(here(), trial.loop), trial.loop, trial.amplitude))
-    return std::nullopt;
+  if (!may_have_come_back(_frontier, trial.loop, trial.amplitude)) return std::nullopt;
   const std::vector<double>& before = _stepper.last();
   const double step = _problem->product(trial.values, before, trial.values, before);
   if (is_far_off(_system->structure(), _frontier.first, trial.loop, beside_closing_step, step)) return std::nullopt;
