@@ -70,7 +70,7 @@ loop::Loop swing(double amplitude) {
   return loop;
 }
 
-// From -1.4e7 to 3e7 the test function is a step, which halving finds in more than 30 orbits. The index is smooth.
+// From -1.4e7 to 3e7 the test function is a step, which halving finds in 29 to 36 orbits. The index is smooth.
 TEST(SteepIndex, CrossingsBetweenLargeIndicesAreFoundByTheIndex) {
   const auto system = std::make_shared<Mathieu>();
   continuation::FamilyCurve curve(system, {}, {});
