@@ -345,8 +345,12 @@ void Collocation::begin_gmres(const double* u) {
 /// GMRES leaves is for the nonlinear solver to see.
 void Collocation::solve_linearised(double* r) const {
   Eigen::Map<Eigen::VectorXd> values(r, size());
-  if (!values.allFinite()) return;
-  values = _gmres->solve(values, {of_linear_residual, _rounding}).x;
+  _is_reached = values.allFinite();
+  if (!_is_reached) return;
+  const double size = values.norm();
+  const ShellGmres::Result result = _gmres->solve(values, {of_linear_residual, _rounding});
+  values = result.x;
+  _is_reached = result.residual <= std::max(of_linear_residual * size, _rounding);
 }
 
 void Collocation::precondition(double* r) const {
@@ -360,6 +364,8 @@ void Collocation::precondition(double* r) const {
     _box->solve(r);
   keep_symmetries(r);
 }
+
+bool Collocation::is_solved() const { return _exact != nullptr || (_gmres != nullptr && _is_reached); }
 
 Collocation::Quality Collocation::quality(const double* u) const {
   const int m = cells();

@@ -16,8 +16,8 @@ struct LeftOpen {
 
 /// By the equations of an orbit with this isotropy on its own fundamental domain, linearised there, with residuals as
 /// large as rounding leaves them. Where neighbours are nearer than `across` they are not told apart. 0 where that is
-/// not known: collocation does not apply, has too many unknowns to factor its Jacobian (equations::exact_unknowns), or
-/// the field fails.
+/// not known: collocation does not apply, GMRES does not solve the linearised equations and they have too many unknowns
+/// to be factored (equations::exact_unknowns), or the field fails.
 [[nodiscard]] LeftOpen left_open_by_rounding(const systems::System& system, const loop::Loop& orbit,
                                              const loop::Isotropy& isotropy);
 

@@ -76,6 +76,9 @@ class Collocation final : public PreconditionedEquations {
   /// Whether the fitted box differs from the plain one in any cell, as of where the preconditioner was last built.
   [[nodiscard]] bool has_cells_to_fit() const;
   void precondition(double* r) const override;
+  /// Whether the last `precondition` solved the derivative's equations: the boxes stand for it only, and GMRES goes no
+  /// further than it comes.
+  [[nodiscard]] bool is_solved() const;
   /// What rounding leaves of the residual at `u`, near where the preconditioner was built, as a norm: that of the
   /// values at the nodes, and of the states as the field multiplies it.
   [[nodiscard]] double residual_rounding(const double* u) const;
@@ -145,6 +148,7 @@ class Collocation final : public PreconditionedEquations {
   std::unique_ptr<DenseFactor> _exact;  // in place of it
   std::unique_ptr<ShellGmres> _gmres;   // around it
   double _rounding = 0.0;               // of the residual, where GMRES was begun
+  mutable bool _is_reached = false;     // by what GMRES solved last
   Preconditioner _preconditioner = Preconditioner::box;
   double _jacobian_rms = 0.0;
   mutable std::shared_ptr<const systems::System> _moved;  // with the parameters of the last point, where any moves
