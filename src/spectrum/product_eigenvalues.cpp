@@ -29,7 +29,7 @@ std::vector<Eigen::MatrixXd> joined(const std::vector<Eigen::MatrixXd>& factors)
   std::vector<Eigen::MatrixXd> groups{factors.front()};
   Eigen::MatrixXd next;
   for (std::size_t n = 1; n < factors.size(); ++n) {
-    next.noalias() = factors[n].lazyProduct(groups.back());
+    next.noalias() = factors[n] * groups.back();
     if (next.norm() <= joined_norm)
       groups.back().swap(next);
     else
@@ -56,27 +56,44 @@ struct Iteration {
   }
 };
 
-/// Ends of the diagonal blocks into which frame' * next falls.
-std::vector<Eigen::Index> block_ends(const Eigen::MatrixXd& turn) {
+/// How far the frame is from one that parts the values at each place.
+std::vector<double> couplings(const Iteration& iteration) {
+  const Eigen::MatrixXd turn = iteration.frame.transpose() * iteration.next;
   const Eigen::Index r = turn.rows();
+  std::vector<double> out;
+  for (Eigen::Index cut = 1; cut < r; ++cut) out.push_back(turn.bottomLeftCorner(r - cut, cut).norm());
+  return out;
+}
+
+/// Ends of the diagonal blocks into which frame' * next falls.
+std::vector<Eigen::Index> block_ends(const Iteration& iteration) {
+  const std::vector<double> coupled = couplings(iteration);
   std::vector<Eigen::Index> ends;
-  for (Eigen::Index cut = 1; cut < r; ++cut)
-    if (turn.bottomLeftCorner(r - cut, cut).norm() < parted) ends.push_back(cut);
-  ends.push_back(r);
+  for (std::size_t n = 0; n < coupled.size(); ++n)
+    if (coupled[n] < parted) ends.push_back(static_cast<Eigen::Index>(n) + 1);
+  ends.push_back(iteration.frame.rows());
   return ends;
 }
 
+/// Whether at some place values part within so many sweeps more, if they go on as over the last one.
+bool may_part(const std::vector<double>& before, const std::vector<double>& now, int sweeps) {
+  for (std::size_t n = 0; n < now.size(); ++n)
+    if (!(now[n] < parted) && now[n] * std::pow(now[n] / before[n], sweeps) < parted) return true;
+  return false;
+}
+
+/// Until the values have parted where they do: those on the unit circle do not.
 Iteration iterate(const std::vector<Eigen::MatrixXd>& groups) {
   Iteration iteration;
   iteration.frame = numerics::orthogonal_in_general_position(groups.front().rows());
   iteration.sweep(groups);
+  std::vector<double> before = couplings(iteration);
   for (int n = 0; n < most_sweeps; ++n) {
-    const bool all_parted =
-        static_cast<Eigen::Index>(block_ends(iteration.frame.transpose() * iteration.next).size()) ==
-        iteration.frame.rows();
-    if (n > 1 && all_parted) break;
     iteration.frame = iteration.next;
     iteration.sweep(groups);
+    std::vector<double> now = couplings(iteration);
+    if (n > 0 && !may_part(before, now, most_sweeps - n)) break;
+    before = std::move(now);
   }
   return iteration;
 }
@@ -133,7 +150,7 @@ std::vector<Complex> product_eigenvalues(const std::vector<Eigen::MatrixXd>& fac
   if (factors.empty() || factors.front().rows() == 0) return {};
   const Iteration iteration = iterate(joined(factors));
   const Eigen::Index r = iteration.frame.rows();
-  const std::vector<Eigen::Index> ends = block_ends(iteration.frame.transpose() * iteration.next);
+  const std::vector<Eigen::Index> ends = block_ends(iteration);
   std::vector<Complex> result;
   // A symplectic product has a block over the middle that is closed under mu -> 1/mu; those above it hold the larger
   // of each pair.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -11,7 +10,7 @@ namespace orbweaver::numerics {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : _generator(seed) {}
-  double operator()() { return std::ldexp(static_cast<double>(_generator() >> 11), -52) - 1.0; }
+  double operator()() { return static_cast<double>(_generator() >> 11) * 0x1p-52 - 1.0; }
 
  private:
   std::mt19937_64 _generator;
