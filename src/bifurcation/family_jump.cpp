@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/continuation/orbit.hpp"

@@ -36,7 +36,7 @@ constexpr double bulge = 0.8;
 constexpr double far_off = 2.0;
 /// In parts of the distance between two orbits, by how much a parameter may leave the range between theirs. Not
 /// measured.
-constexpr double turned = 0.5;
+constexpr double out_of_range = 0.5;
 /// Roundings of the coordinates by which two computations of one orbit may differ. Not measured.
 constexpr double roundings = 1e3;
 
@@ -234,7 +234,7 @@ bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double wide
   return between(a.loop.period, b.loop.period, period, widening * period) &&
          between(a.energy, b.energy, x.energy, widening * std::abs(x.action) / period) &&
          between(parameter(a), parameter(b), parameter(x),
-                 std::max(widening * std::abs(parameter(x)), turned * loop::mean_distance(a.loop, b.loop))) &&
+                 std::max(widening * std::abs(parameter(x)), out_of_range * loop::mean_distance(a.loop, b.loop))) &&
          between(a.action, b.action, x.action, widening * std::abs(x.action));
 }
 

@@ -1,4 +1,5 @@
 #include "orbweaver/bifurcation/locus.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
 
 #include <array>
 #include <limits>

@@ -13,6 +13,7 @@
 
 #include "explained.hpp"
 #include "newton.hpp"
+#include "once_around.hpp"
 #include "orbweaver/ad/rounded.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
@@ -27,9 +28,6 @@ namespace orbweaver::certificate {
 
 namespace {
 
-using State = std::vector<double>;
-using States = std::vector<State>;
-
 /// Of the Taylor series: a digit more than the Runge-Kutta integrator keeps. More digits are more time, and rounding.
 constexpr double taylor_digits = 14.0;
 /// Of the transition matrices: a Newton step is good to their digits, and so are multipliers.
@@ -40,33 +38,11 @@ constexpr std::array primes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31};
 /// Of how far the orbit reaches from z(0): returns that come no nearer at one time need not be looked at all around.
 constexpr double near_return = 0.01;
 
-double norm(const State& state) {
-  double sum = 0.0;
-  for (const double value : state) sum += value * value;
-  return std::sqrt(sum);
-}
-
-double distance(const State& a, const State& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
-Eigen::VectorXd vector_of(const State& state) {
-  return Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
-}
-
 double largest(const std::vector<Eigen::VectorXd>& vectors) {
   double largest = 0.0;
   for (const Eigen::VectorXd& vector : vectors) largest = std::max(largest, vector.norm());
   return largest;
 }
-
-/// Of the orbit's reach: where it returns by no more, what a displacement grows to is not asked for. So far off every
-/// orbit may return (verdict.cpp).
-constexpr double far_return = unexplained * integration_error;
-/// Of the reach: by how much a state is displaced to see it, a hundred times what the integrator's tolerance leaves.
-constexpr double displaced = 1e-11;
 
 }  // namespace
 
@@ -117,7 +93,10 @@ class Certifier::Parts {
     closures(found);
     conserved(found);
     for (const State& state : _states) found.reach = std::max(found.reach, norm(state));
-    once_around(found, known_growth);
+    const OnceAround once =
+        once_around({_system, _states, _loop->period, found.reach, _options.tolerance}, known_growth);
+    found.single_shot = once.distance;
+    found.displaced_growth = once.displaced_growth;
     found.symmetry_defect = symmetry_defect();
     found.recurrence = recurrence();
     found.tail = loop::tail(loop);
@@ -232,72 +211,6 @@ class Certifier::Parts {
       found.taylor_closure = std::max(found.taylor_closure, _taylor_gaps[m].norm());
       found.apart = std::max(found.apart, distance(ends[m], end));
     }
-  }
-
-  // Closure once around, and how much an error grows on the way where that is far off. NaN where the orbit is so
-  // unstable that the integration leaves the region where the system is defined. The growth is that of integrations
-  // with steps of their own: what rounding grows to on the way counts too.
-  void once_around(Certificate& found, double known_growth) const {
-    try {
-      const State end = integrate(_system, _states.front(), _loop->period, _options.tolerance);
-      found.single_shot = distance(end, _states.back());
-      // What is known may explain the return, or leave it open: other growth then decides nothing (verdict.cpp).
-      const double known = far_return * std::fmax(1.0, known_growth);
-      if (!(found.single_shot > known * found.reach) || known >= nearby) return;
-      double largest = unknown;
-      for (const State& direction : displacements()) {
-        const double length = norm(direction);
-        if (!(length > 0.0)) continue;
-        State moved = _states.front();
-        for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * found.reach / length * direction[i];
-        const State other = integrate(_system, moved, _loop->period, _options.tolerance);
-        largest = std::fmax(largest, distance(other, end) / (displaced * found.reach));
-      }
-      found.displaced_growth = largest;
-      // Where this explains the return the way costs half a certificate for nothing.
-      const double explained = far_return * found.reach * (1.0 + std::fmax(largest, known_growth));
-      if (found.single_shot > explained)
-        found.displaced_growth = std::fmax(largest, growth_on_the_way(displaced * found.reach));
-    } catch (const core::NumericalError&) {
-    }
-  }
-
-  // The most that a displacement of one coordinate at one of the instants t_m has grown by T, by products of
-  // differences over the segments: an error that is made on the way grows from there, and beside what repels orbits by
-  // far more than one that is made at their start.
-  [[nodiscard]] double growth_on_the_way(double size) const {
-    const std::size_t d = _states.front().size();
-    States beside;
-    for (const State& from : starts()) {
-      beside.push_back(from);
-      for (std::size_t i = 0; i < d; ++i) beside.emplace_back(from)[i] += size;
-    }
-    const States ends = integrate_together(_system, beside, step(), _options.tolerance);
-    const auto rows = static_cast<Eigen::Index>(d);
-    Eigen::MatrixXd to_end = Eigen::MatrixXd::Identity(rows, rows);
-    double most = 0.0;
-    for (std::size_t first = ends.size(); first > 0;) {
-      first -= d + 1;
-      Eigen::MatrixXd over_segment(rows, rows);
-      for (std::size_t i = 0; i < d; ++i)
-        over_segment.col(static_cast<Eigen::Index>(i)) =
-            (vector_of(ends[first + 1 + i]) - vector_of(ends[first])) / size;
-      to_end = (to_end * over_segment).eval();
-      most = std::max(most, to_end.colwise().norm().maxCoeff());
-    }
-    return most;
-  }
-
-  // The gradient of the energy, or, where nothing is conserved, every coordinate.
-  [[nodiscard]] States displacements() const {
-    const std::size_t d = _states.front().size();
-    States directions;
-    if (_system.structure().conserved.empty()) {
-      for (std::size_t i = 0; i < d; ++i) directions.emplace_back(d, 0.0)[i] = 1.0;
-    } else {
-      _system.conserved_gradient(0, _states.front(), directions.emplace_back(d));
-    }
-    return directions;
   }
 
   void conserved(Certificate& found) const {

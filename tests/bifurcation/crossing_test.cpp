@@ -1,4 +1,5 @@
 #include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -93,12 +93,4 @@ void tell_birth(const systems::Structure& system, spectrum::Stability& birth);
 [[nodiscard]] Reading index_deviation(const systems::Structure& system, const spectrum::Stability& stability,
                                       const Sector& sector);
 
-/// dT/ds, dE/ds and dp/ds of the family at a point, s being the length in modes and scalars, p the first parameter that
-/// moves.
-[[nodiscard]] double period_slope(const continuation::CurvePoint& point);
-[[nodiscard]] double parameter_slope(const continuation::CurvePoint& point);
-[[nodiscard]] double energy_slope(const systems::System& system, const continuation::CurvePoint& point);
-/// Of the level (continuation::level_of): the energy, or the parameter that moves.
-[[nodiscard]] double level_slope(const systems::System& system, const continuation::CurvePoint& point);
-
 }  // namespace orbweaver::bifurcation

@@ -128,6 +128,14 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
       crossings[static_cast<std::size_t>(families[row].crossing)].children.push_back(static_cast<int>(row));
 }
 
+std::size_t AtlasTree::first_step_of(const TreeFamily& family) const {
+  const auto& steps = atlas.orbits().integers("step");
+  std::size_t first = 0;
+  for (std::size_t n = 0; n < family.orbits(); ++n)
+    if (std::abs(steps[family.first_orbit + n]) < std::abs(steps[family.first_orbit + first])) first = n;
+  return first;
+}
+
 std::string place_text(const TreeCrossing& crossing) {
   const std::string level =
       crossing.parameter.empty() ? "" : fmt::format(", {} {:.6g}", crossing.parameter, crossing.level);

@@ -11,14 +11,15 @@
 #include "birth_itself.hpp"
 #include "crossing_outcome.hpp"
 #include "executor.hpp"
+#include "hidden_event.hpp"
 #include "interrupted.hpp"
-#include "orbit_row.hpp"
 #include "orbweaver/archive/schema/records.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/bifurcation/kernel.hpp"
 #include "orbweaver/bifurcation/parted_crossings.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/subspace.hpp"
@@ -76,7 +77,7 @@ class Location {
     options.corrector.method = corrector::Method::newton_krylov;
     continuation::FamilyCurve any(_system, isotropy, options);
     add_known(any);
-    const auto [from, to] = between_known(any);
+    const auto [from, to] = between_known(_work, any);
     const bifurcation::NotLocated at_first = why;
     bifurcation::Event event = _event;
     event.from_birth = event.from_birth || from < 0.0;  // the family's first orbit is at 0
@@ -90,7 +91,7 @@ class Location {
     if (is_in_sector(_event) && _event.function.sector.q == 1 && can_fold()) {
       bifurcation::NotLocated no_turn;
       const Event fold{fold_event(fold_kind()), {}, false};
-      const auto [before, behind] = between_known(fast);
+      const auto [before, behind] = between_known(_work, fast);
       crossing = bifurcation::locate(*_system, fast, fold, before, behind, no_turn);
       if (crossing && crossing->point.position >= _work.from && crossing->point.position <= _work.to) {
         _event = fold;
@@ -101,17 +102,6 @@ class Location {
   }
 
  private:
-  /// From the last known orbit before the event to the first behind it.
-  [[nodiscard]] std::pair<double, double> between_known(const continuation::FamilyCurve& family) const {
-    double from = family.known().front().position;
-    double to = family.known().back().position;
-    for (const continuation::FamilyCurve::Known& known : family.known()) {
-      if (known.position <= _work.from) from = std::max(from, known.position);
-      if (known.position >= _work.to) to = std::min(to, known.position);
-    }
-    return {from, to};
-  }
-
   /// So that flushes need not wait for the end; a location that is stopped begins again.
   void report() const {
     if (!_context.report({})) throw Interrupted();
@@ -195,7 +185,7 @@ class Location {
     const bool is_told = why.reason == bifurcation::NotLocated::Reason::no_event;
     _outcome.undecided = _event.passed || (!is_told && (_event.tangency || is_zero(why)));
     if (done.failed)
-      if (const std::string hidden = hidden_in(family, why.reason); !hidden.empty()) {
+      if (const std::string hidden = hidden_by_rounding(*_system, _work, family, why.reason, _team); !hidden.empty()) {
         done.failed = false;
         _outcome.undecided = true;
         _outcome.remark += "; " + hidden;
@@ -205,52 +195,6 @@ class Location {
                                 family.arclength_at(_work.from), family.arclength_at(_work.to), _outcome.remark);
     done.payload = pack(_outcome);
     return done;
-  }
-
-  /// Why rounding hides the event: its function has no sign on the way to it, or one of the orbits on both sides is not
-  /// told from others. Empty where neither is so.
-  [[nodiscard]] std::string hidden_in(const continuation::FamilyCurve& family,
-                                      bifurcation::NotLocated::Reason reason) const {
-    if (reason == bifurcation::NotLocated::Reason::no_zero && is_cut(family))
-      return "on all orbits that are known between both signs of the function it is within its error bound";
-    std::vector<const loop::Loop*> ends;
-    const auto [from, to] = between_known(family);
-    for (const continuation::FamilyCurve::Known& known : family.known())
-      if (known.position == from || known.position == to) ends.push_back(&known.loop);
-    for (std::size_t n = 0; n < ends.size(); ++n) {
-      const loop::Loop* beside = ends.size() > 1 ? ends[n == 0 ? 1 : n - 1] : nullptr;
-      std::string why = not_told_apart(*_system, *ends[n], beside, family.isotropy(), _team);
-      if (!why.empty()) return why;
-    }
-    return steep_in(family);
-  }
-
-  /// Whether the function had its sign before the event on the first known orbit, or before it: those since have none.
-  [[nodiscard]] bool is_cut(const continuation::FamilyCurve& family) const {
-    return _event.kind == Event::Kind::test_function && family.known().size() >= kept_orbits &&
-           _work.from <= family.known().front().position;
-  }
-
-  /// Says so where an index is between -2 and 2 on too short a part of the way between the known orbits around the
-  /// event.
-  [[nodiscard]] std::string steep_in(const continuation::FamilyCurve& family) const {
-    if (!_system->structure().symplectic) return {};
-    const loop::Loop* before = nullptr;
-    const loop::Loop* after = nullptr;
-    for (const continuation::FamilyCurve::Known& known : family.known()) {
-      if (known.position <= _work.from) before = &known.loop;
-      if (known.position >= _work.to && !after) after = &known.loop;
-    }
-    if (!before || !after) return {};
-    const auto from = stability_of(*_system, *before, family.isotropy(), _team);
-    const auto to = stability_of(*_system, *after, family.isotropy(), _team);
-    const double smallest = family.options().smallest_jump;
-    if (!from || !to ||
-        bifurcation::are_turns_asked(*from, *to, continuation::arclength_between(*before, *after), smallest))
-      return {};
-    return fmt::format(
-        "an index of {:.2g} is between -2 and 2 on less than {:.0e} of the way: families cross to rounding",
-        std::max(std::abs(from->fundamental[0]), std::abs(to->fundamental[0])), smallest);
   }
 
   void describe(const bifurcation::Crossing& crossing, const continuation::FamilyCurve& family) {

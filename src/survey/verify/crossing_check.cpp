@@ -14,6 +14,7 @@
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/kernel.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/continuation/orbit.hpp"
@@ -21,13 +22,12 @@
 #include "orbweaver/corrector/method.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
-#include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/numerics/locate.hpp"
-#include "tasks/arrival.hpp"
 #include "tasks/executor.hpp"
 #include "tasks/locate_task.hpp"
 #include "tasks/orbit_row.hpp"
 #include "tasks/units.hpp"
+#include "verify/crossing_families.hpp"
 #include "verify/distance_to_orbit.hpp"
 
 namespace orbweaver::survey {
@@ -43,6 +43,8 @@ constexpr std::size_t orbits_given = 5;
 constexpr double same_place = 1e-10;
 /// Crossings beneath the end of a branch get their arclength by comparison of orbits (witness/placement).
 constexpr double same_placement = 1e-6;
+/// How far a birth may lie from the first orbit, in parts of the way to the next.
+constexpr double steps_to_birth = 3.0;
 /// Of an arclength, in parts of the way between the orbits beside: chords are measured in a loop's parameter, which the
 /// standard phase has turned where no reversor fixes the phase.
 constexpr double same_chord = 1e-2;
@@ -55,14 +57,11 @@ constexpr double located = 1e-9;
 /// Between two computations of the largest singular value of a kernel, and what of it is rounding.
 constexpr double kernel_factor = 100.0;
 constexpr double kernel_rounding = 1e-8;
+/// Of the way from the orbits beside a crossing to it, orbits on that way: each so much nearer, up to the last.
+constexpr double nearer = 0.5;
+constexpr double nearest = 1e-6;
 /// A slope that vanishes, relative to those at the orbits beside it.
 constexpr double vanishing_slope = 1e-5;
-/// How far the first orbit of a family may lie from its crossing, and the last from where it ends, in parts of the way
-/// to the next orbit or of the orbit's amplitude, whichever is more.
-constexpr double steps_away = 3.0;
-constexpr double amplitudes_away = 0.1;
-/// Of the way from the crossing to a first orbit, as the archive says it.
-constexpr double same_birth = 1e-3;
 
 struct Place {
   continuation::CurvePoint point;
@@ -86,7 +85,7 @@ class CrossingCheck {
 
   void run() {
     const double arclength = real("arclength");
-    if (_family.orbits() < 2) return;  // one orbit has no curve
+    if (_family.orbits() < 2) return;                               // one orbit has no curve
     if (_family.parent >= 0 && is_beside_birth(arclength)) return;  // no orbits beside it to find it from
     if (arclength < _family.arclengths.front() || arclength > _family.arclengths.back())
       return _claims.object("arclength", fmt::format("is {:.12g}; its family runs from {:.12g} to {:.12g}", arclength,
@@ -124,7 +123,7 @@ class CrossingCheck {
     } catch (const core::NumericalError& error) {
       claims.object("", error.what());
     }
-    if (place && findings.objections.empty()) families(*place, findings);
+    if (place && findings.objections.empty()) check_families_at(_atlas, _row, place->point.loop, findings);
   }
 
   /// The family's orbit whose period, or level where that changes more, is the row's.
@@ -211,20 +210,45 @@ class CrossingCheck {
     const bool by_level = _kind == CrossingKind::fold_period || (!turns_in_level && in_level > in_period);
     // A drive ties the period to its frequency: both turn there, or the period does not change at all. Where it changes
     // more than the parameter, as along a canard, it says better where the fold is than a slope that is small all over.
-    const bool by_slope = both_turn || (_kind == CrossingKind::fold_parameter && !(in_period > in_level));
-    const double wanted = by_level ? real(level()) / units.level() : real("period") / units.time;
-    const auto off = [&](double position) {
-      const auto point = curve.at(position, by_slope);
-      if (!point) return std::numeric_limits<double>::quiet_NaN();
-      if (by_slope) return slope(*point);
-      return (by_level ? continuation::level_of(_system, point->loop) : point->loop.period) - wanted;
+    if (both_turn || (_kind == CrossingKind::fold_parameter && !(in_period > in_level)))
+      return root_near(a, b, told, [&](double position) {
+        const auto point = curve.at(position, true);
+        return point ? slope(*point) : std::numeric_limits<double>::quiet_NaN();
+      });
+    const auto where = [&](bool is_level) {
+      const double wanted = is_level ? real(level()) / units.level() : real("period") / units.time;
+      return root_near(a, b, told, [&](double position) {
+        const auto point = curve.at(position);
+        if (!point) return std::numeric_limits<double>::quiet_NaN();
+        return (is_level ? continuation::level_of(_system, point->loop) : point->loop.period) - wanted;
+      });
     };
-    // The quantity may turn between the two: near the place it does not, unless the crossing is a fold.
+    if (const std::optional<double> place = where(by_level)) return place;
+    if (archive::is_fold(_kind)) return std::nullopt;
+    come_near(curve, a, b, told);
+    const std::optional<double> place = where(by_level);
+    return place || std::isnan(level_a) ? place : where(!by_level);  // beside a fold of the one the other tells
+  }
+
+  /// Orbits nearer and nearer to a place, from both sides: where a family turns sharply, what those around predict of
+  /// it leads to another one.
+  static void come_near(continuation::FamilyCurve& curve, const continuation::FamilyCurve::Known& a,
+                        const continuation::FamilyCurve::Known& b, double told) {
+    for (double share = nearer; share > nearest; share *= nearer)
+      for (const double end : {a.position, b.position}) (void)curve.at(told + share * (end - told));
+  }
+
+  /// The nearest zero to the place `told` between two orbits of a function that may turn between them: near the place
+  /// it does not.
+  template <class Function>
+  [[nodiscard]] static std::optional<double> root_near(const continuation::FamilyCurve::Known& a,
+                                                       const continuation::FamilyCurve::Known& b, double told,
+                                                       const Function& function) {
     const double length = b.position - a.position;
     for (const double reach : {1e-6, 1e-3, 1e-2, 1.0}) {
       const double from = std::max(a.position, told - reach * length);
       const double to = std::min(b.position, told + reach * length);
-      const auto place = numerics::locate_root(off, from, to, position_width * (1.0 + std::abs(to)));
+      const auto place = numerics::locate_root(function, from, to, position_width * (1.0 + std::abs(to)));
       if (place) return place->position;
     }
     return std::nullopt;
@@ -400,101 +424,20 @@ class CrossingCheck {
     claims.below("kind", std::abs(found.value), allowed, "the test function there");
   }
 
-  /// Families that were born here, and those that end here.
-  void families(const Place& place, Findings& findings) {
-    const auto& all = _atlas.tree().families;
-    const loop::Loop& loop = place.point.loop;
-    std::optional<loop::Loop> around;
-    const auto orbit = [&]() -> const loop::Loop& {
-      if (!around)
-        around =
-            _crossing.multiplicity == 1 ? loop : loop::repeated(loop::evenly_in_time(loop), _crossing.multiplicity);
-      return *around;
-    };
-    for (std::size_t n = 0; n < all.size(); ++n) {
-      const bool born = all[n].crossing == static_cast<int>(_row);
-      const bool ends = all[n].end_crossing == static_cast<int>(_row);
-      if (all[n].orbits() < 2 || !(born || ends)) continue;
-      Claims claims(findings, "families", static_cast<std::int64_t>(n));
-      if (born) near(all[n], first_of(all[n]), orbit(), "crossing", claims);
-      if (born) check_birth(all[n], orbit(), claims);
-      if (ends) {
-        // Forwards, or backwards where that end has joined.
-        Findings forwards;
-        Claims there(forwards, "families", static_cast<std::int64_t>(n));
-        near(all[n], all[n].orbits() - 1, orbit(), "end_crossing", there);
-        Findings backwards;
-        Claims back(backwards, "families", static_cast<std::int64_t>(n));
-        if (!forwards.objections.empty()) near(all[n], 0, orbit(), "end_crossing", back);
-        const bool is_near = forwards.objections.empty() || backwards.objections.empty();
-        if (!is_near && lies_beneath(all[n])) continue;
-        merge(findings, std::move(forwards.objections.empty() || !is_near ? forwards : backwards));
-      }
-    }
-  }
-
-  /// Whether a branch's last orbit lies beside this crossing, as what of it repeats tells: before a weak resonance
-  /// rounding hides the rest of the way, which may be many steps long (survey/tasks/arrival.hpp).
-  [[nodiscard]] bool lies_beneath(const TreeFamily& family) const {
-    if (_crossing.multiplicity < bifurcation::least_weak_resonance) return false;
-    for (const std::size_t orbit : {family.orbits() - 1, std::size_t{0}}) {
-      ArrivalRecord found;
-      found.multiplicity = _crossing.multiplicity;
-      if (!locate_beneath(_atlas.system(), options(), _atlas.loop(family.first_orbit + orbit), found)) continue;
-      const double period = found.period / _crossing.multiplicity * _system.scales().time;
-      if (std::abs(period - real("period")) <= same_placement * real("period")) return true;
-    }
-    return false;
-  }
-
   /// Whether no orbit lies between it and the birth of its family, on a side that the family has.
   [[nodiscard]] bool is_beside_birth(double arclength) const {
     const std::vector<double>& orbits = _family.arclengths;
     const auto behind = [&](double s) { return std::lower_bound(orbits.begin(), orbits.end(), s); };
     double birth = _family.birth_arclength;
     if (std::isnan(birth)) {  // an archive that does not say where it is
-      const std::size_t first = first_of(_family);
-      birth = first > 0 ? 0.5 * (orbits[first - 1] + orbits[first]) : orbits[0] - steps_away * (orbits[1] - orbits[0]);
+      const std::size_t first = _atlas.tree().first_step_of(_family);
+      birth =
+          first > 0 ? 0.5 * (orbits[first - 1] + orbits[first]) : orbits[0] - steps_to_birth * (orbits[1] - orbits[0]);
     }
     const auto next = behind(birth);
     const double from = next == orbits.begin() ? birth : next[-1];
     const double to = next == orbits.end() ? birth : *next;
     return behind(arclength) == next && arclength >= from && arclength <= to;
-  }
-
-  [[nodiscard]] std::size_t first_of(const TreeFamily& family) const {
-    const auto& steps = _atlas.archive().orbits().integers("step");
-    std::size_t first = 0;
-    for (std::size_t n = 0; n < family.orbits(); ++n)
-      if (std::abs(steps[family.first_orbit + n]) < std::abs(steps[family.first_orbit + first])) first = n;
-    return first;
-  }
-
-  void near(const TreeFamily& family, std::size_t orbit, const loop::Loop& crossing, const char* column,
-            Claims& claims) {
-    const std::size_t beside = orbit + 1 < family.orbits() ? orbit + 1 : orbit - 1;
-    const loop::Loop own = _atlas.loop(family.first_orbit + orbit);
-    const loop::Loop next = _atlas.loop(family.first_orbit + beside);
-    const systems::Structure& system = _system.structure();
-    const double step = std::hypot(loop::align(system, next, own).distance, next.period / own.period - 1.0);
-    const double away = std::hypot(loop::align(system, crossing, own).distance, crossing.period / own.period - 1.0);
-    claims.below(column, away, std::max(steps_away * step, amplitudes_away * loop::rms_amplitude(own)),
-                 fmt::format("the distance of orbit {} from the crossing in row {}", family.first_orbit + orbit, _row));
-  }
-
-  /// How far the orbits beside the birth lie from the crossing.
-  void check_birth(const TreeFamily& family, const loop::Loop& crossing, Claims& claims) const {
-    const std::vector<double>& orbits = family.arclengths;
-    const double birth = family.birth_arclength;
-    if (std::isnan(birth)) return;
-    const auto next = std::lower_bound(orbits.begin(), orbits.end(), birth) - orbits.begin();
-    const auto behind = static_cast<std::size_t>(next);
-    for (std::size_t n = behind > 0 ? behind - 1 : 0; n <= behind && n < orbits.size(); ++n) {
-      const loop::Loop own = _atlas.loop(family.first_orbit + n);
-      const loop::Loop there = loop::aligned(crossing, loop::align(_system.structure(), crossing, own));
-      const double way = continuation::arclength_in_units(_system, there, own);
-      claims.agree("birth_arclength", std::abs(orbits[n] - birth), way, same_birth * way);
-    }
   }
 
   const VerifiedAtlas& _atlas;

@@ -60,6 +60,8 @@ struct AtlasTree {
   std::string parameter;   ///< that moves along the families; empty: none does
 
   [[nodiscard]] bool in_parameter() const { return !parameter.empty(); }
+  /// Of the family's orbits, the one of the first step.
+  [[nodiscard]] std::size_t first_step_of(const TreeFamily& family) const;
 };
 
 /// "period-doubling T 8.44293", "fold-parameter T 5.23599, drive_amplitude 0.4"

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/bifurcation/crossing.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
 #include "orbweaver/loss/linearization.hpp"
 #include "orbweaver/numerics/locate.hpp"
 

@@ -1,0 +1,163 @@
+#include "event_function.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "orbweaver/bifurcation/parted_crossings.hpp"
+#include "orbweaver/bifurcation/slopes.hpp"
+#include "orbweaver/continuation/orbit.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::bifurcation {
+
+namespace {
+
+/// How far beside a place without an orbit a fold's neighbours are taken, in parts of the interval in which it is
+/// looked for, the first two that there are: a family may turn where it crosses another one, and there Newton's method
+/// finds no orbit if it is asked for exactly that one.
+constexpr double beside_singular[] = {1e-4, 1e-3, 1e-2};
+
+/// A value is zero that moves the place by this share of what it may be off, by the function's mean slope.
+constexpr double negligible = 1e-2;
+/// Of its error, what a value must be to tell a slope.
+constexpr double told = 100.0;
+
+double slope(const systems::System& system, Event::Kind kind, const continuation::CurvePoint& point) {
+  if (kind == Event::Kind::fold_period) return period_slope(point);
+  return kind == Event::Kind::fold_energy ? energy_slope(system, point) : parameter_slope(point);
+}
+
+}  // namespace
+
+std::optional<std::array<continuation::CurvePoint, 2>> both_sides(continuation::FamilyCurve& family, double position,
+                                                                  const Interval& within, bool with_tangent) {
+  for (const double share : beside_singular) {
+    const double away = share * (within.to - within.from);
+    if (position - away < within.from || position + away > within.to) break;
+    auto before = family.at(position - away, with_tangent);
+    auto behind = before ? family.at(position + away, with_tangent) : std::nullopt;
+    if (behind && before->loop.time_map == behind->loop.time_map)
+      return std::array{*std::move(before), *std::move(behind)};
+  }
+  return std::nullopt;
+}
+
+double turning(const systems::System& system, Event::Kind kind, const loop::Loop& loop) {
+  if (kind == Event::Kind::fold_parameter) return loop.parameters.front();
+  return kind == Event::Kind::fold_period ? loop.period : continuation::energy_of(system, loop);
+}
+
+double EventFunction::operator()(double position) {
+  const auto known = _known.find(position);
+  if (known != _known.end()) return known->second.value;
+  const std::optional<Crossing> there = at(position, false, is_birth(position));
+  if (!there) return std::numeric_limits<double>::quiet_NaN();  // it says why each time that it is asked
+  _known[position] = {there->reading.value, there->stability};
+  return there->reading.value;
+}
+
+double EventFunction::size_at(double position) const {
+  if (_event.kind != Event::Kind::test_function || _event.is_parted || !has_sector(_event.function.kind)) return 0.0;
+  return std::abs(index_deviation(_system.structure(), _known.at(position).stability, _event.function.sector).value);
+}
+
+double EventFunction::known_over(double position, double size) const {
+  return value_over(_event.function, _system.structure(), _known.at(position).stability, size);
+}
+
+double EventFunction::uncertainty_at(double position) {
+  const std::optional<Crossing> zero = at(position);
+  if (!zero || !(zero->reading.error > 0.0)) return 0.0;
+  double away = std::numeric_limits<double>::infinity();
+  double slope = 0.0;
+  for (const auto& [other, there] : _known)
+    if (std::abs(there.value) > told * zero->reading.error && std::abs(other - position) < away) {
+      away = std::abs(other - position);
+      slope = std::abs(there.value) / away;
+    }
+  return zero->reading.error / slope;
+}
+
+double EventFunction::twist_at(double position) {
+  const std::optional<Crossing> there = at(position);
+  return there ? there->stability.twist : std::numeric_limits<double>::quiet_NaN();
+}
+
+double EventFunction::deviation_at(double position) {
+  const std::optional<Crossing> there = at(position);
+  return there ? index_deviation(_system.structure(), there->stability, _event.function.sector).value
+               : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<Crossing> EventFunction::at(double position, bool whole, bool tells_birth) {
+  const bool fold = _event.kind != Event::Kind::test_function;
+  std::optional<continuation::CurvePoint> point = _family.at(position, whole || fold);
+  std::optional<Reading> slope_between;
+  if (!point && fold)
+    if (auto sides = both_sides(_family, position, _within, true)) {
+      const auto& [before, behind] = *sides;
+      slope_between = {(turning(_system, _event.kind, behind.loop) - turning(_system, _event.kind, before.loop)) /
+                           (behind.position - before.position),
+                       0.0};
+      point = {position, loop::weighted_sum({&before.loop, &behind.loop}, {0.5, 0.5}), {}};
+      point->tangent = loop::with_cutoff(before.tangent, point->loop.cutoff, point->loop.dimension);
+    }
+  if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
+  Crossing out;
+  out.point = std::move(*point);
+  const auto known = fold || is_birth(position) ? _known.end() : _known.find(position);
+  if (known != _known.end()) out.stability = known->second.stability;
+  if (known == _known.end() && (whole || !fold)) try {
+      spectrum::FloquetOptions options;
+      options.team = _family.options().corrector.team;
+      out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
+    } catch (const core::NumericalError& error) {
+      if (_event.kind == Event::Kind::test_function)
+        return without_value(NotLocated::Reason::no_multipliers, position, out.point.loop.period, error.what());
+    }
+  if (tells_birth) tell_birth(_system.structure(), out.stability);
+  if (_event.kind == Event::Kind::test_function)
+    out.reading = _event.is_parted ? determinant_deviation(_system.structure(), out.stability, _event.function.sector)
+                                   : evaluate(_event.function, _system.structure(), out.stability);
+  else
+    out.reading = slope_between ? *slope_between : Reading{slope(_system, _event.kind, out.point), 0.0};
+  if (std::isnan(out.reading.value))
+    return without_value(NotLocated::Reason::no_value, position, out.point.loop.period);
+  return out;
+}
+
+std::optional<Crossing> EventFunction::without_value(NotLocated::Reason reason, double position, double period,
+                                                     std::string detail) {
+  _without_value = {.reason = reason, .position = position, .period = period, .detail = std::move(detail)};
+  return std::nullopt;
+}
+
+double EventFunction::period_before(double position) const {
+  double period = _family.known().front().loop.period;
+  for (const continuation::FamilyCurve::Known& known : _family.known())
+    if (known.position <= position) period = known.loop.period;
+  return period;
+}
+
+std::optional<numerics::Located> root_of(EventFunction& function, const Interval& within, double tolerance) {
+  const auto [from, to] = within;
+  const double at_from = function(from);
+  const double at_to = function(to);
+  if (std::isnan(at_from) || std::isnan(at_to)) return std::nullopt;
+  const double no_more = negligible * tolerance * std::abs(at_to - at_from) / (to - from);
+  const auto search = [&](double size) {
+    const auto along = [&](double position) {
+      const double value = function(position);
+      if (std::abs(value) <= no_more) return 0.0;
+      return size > 0.0 && !std::isnan(value) ? function.known_over(position, size) : value;
+    };
+    return numerics::locate_root(along, from, to, tolerance);
+  };
+  const double size = std::min(function.size_at(from), function.size_at(to));
+  const std::optional<numerics::Located> root = search(size);
+  return root || !(size > 0.0) ? root : search(0.0);
+}
+
+}  // namespace orbweaver::bifurcation
