@@ -101,6 +101,17 @@ class WitnessOf : public ::testing::Test {
     for (std::size_t n = records.crossings.size(); n-- > 0;)
       if (records.crossings[n].family_key == key) remove_crossing(static_cast<int>(n));
   }
+  /// As if the family went back along itself from its last orbit.
+  void turn_back(const std::string& name) {
+    const std::vector<archive::OrbitRecord> orbits = orbits_of(key_named(name));
+    const archive::OrbitRecord& last = orbits.back();
+    for (std::size_t n = orbits.size() - 1; n-- > 0;) {
+      archive::OrbitRecord orbit = orbits[n];
+      orbit.step = 2 * last.step - orbit.step;
+      orbit.arclength = 2.0 * last.arclength - orbit.arclength;
+      records.orbits.push_back(orbit);
+    }
+  }
   /// Another family with orbits of this one: every second, from the given one on.
   void add_every_second(const std::vector<archive::OrbitRecord>& orbits, std::size_t from, const std::string& key) {
     int step = 0;

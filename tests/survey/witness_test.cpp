@@ -174,20 +174,36 @@ TEST_F(WitnessOf, ACurveStoredTwiceForWantOfStepsOrDigits) {
 }
 
 TEST_F(WitnessOf, ACurveThatTurnsBackOnItself) {
-  if (world->is_root()) {
-    std::vector<archive::OrbitRecord> orbits = orbits_of(key_named("Curved"));
-    const archive::OrbitRecord last = orbits.back();
-    for (std::size_t n = orbits.size() - 1; n-- > 0;) {
-      archive::OrbitRecord orbit = orbits[n];
-      orbit.step = 2 * last.step - orbit.step;
-      orbit.arclength = 2.0 * last.arclength - orbit.arclength;
-      records.orbits.push_back(orbit);
-    }
-  }
+  if (world->is_root()) turn_back("Curved");
   const std::vector<Found> rows = found();
   if (!world->is_root()) return;
   ASSERT_THAT(rows, ElementsAre(finding("contradiction", "retraced-curve")));
   EXPECT_EQ(rows[0].family, row_named("Curved"));
+}
+
+// Where an index as steep as that passes 2 families cross to rounding, and a branch may go on along either.
+TEST_F(WitnessOf, ACurveThatTurnsBackWhereRoundingHidesWhichWayItGoes) {
+  const auto said_of = [&](double index) {
+    if (world->is_root()) {
+      records = records_of(*atlas);
+      turn_back("Curved");
+      const std::string key = key_named("Curved");
+      const std::size_t count = orbits_of(key).size();
+      std::size_t n = 0;
+      for (archive::OrbitRecord& orbit : records.orbits)
+        if (orbit.family_key == key) {
+          orbit.stability = orbit.fundamental_stability = {2 * n++ < count ? index : -index};
+          orbit.stability_error = 1e-9 * index;
+        }
+    }
+    return found();
+  };
+  const std::vector<Found> told = said_of(1e12);
+  const std::vector<Found> untold = said_of(1e15);
+  if (!world->is_root()) return;
+  EXPECT_THAT(told, testing::Contains(finding("contradiction", "retraced-curve")));
+  EXPECT_THAT(untold, testing::Contains(finding("undecided", "retraced-curve")));
+  EXPECT_THAT(untold, testing::Not(testing::Contains(finding("contradiction", "retraced-curve"))));
 }
 
 TEST_F(WitnessOf, AFamilyThatRunsThroughACrossingOfAnother) {

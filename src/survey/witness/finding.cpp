@@ -8,14 +8,16 @@ namespace orbweaver::survey {
 
 namespace {
 
+std::string addition_of(const Finding& finding) { return finding.detail.empty() ? "" : "; " + finding.detail; }
+
 std::string sentence_of(const Finding& f, const FindingNames& names) {
   switch (f.kind) {
     case FindingKind::duplicate_curve:
-      return fmt::format("the same orbits are stored in {} ({} of {} compared are the same)", names.other_family,
-                         f.number, f.other_number);
+      return fmt::format("the same orbits are stored in {} ({} of {} compared are the same){}", names.other_family,
+                         f.number, f.other_number, addition_of(f));
     case FindingKind::retraced_curve:
-      return fmt::format("runs over its own orbits or their images again ({} of {} compared are the same)", f.number,
-                         f.other_number);
+      return fmt::format("runs over its own orbits or their images again ({} of {} compared are the same){}", f.number,
+                         f.other_number, addition_of(f));
     case FindingKind::shared_point:
       return fmt::format("passes through the {} of {}, where neither says so", names.crossing, names.other_family);
     case FindingKind::missing_directions:

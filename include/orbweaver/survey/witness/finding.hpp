@@ -74,7 +74,7 @@ struct Finding {
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< how far off (docs/file_format.md says in what)
   int number = 0;
   int other_number = 0;
-  std::string detail{};  ///< what a task said of its failure, or the verdict
+  std::string detail{};  ///< what a task said of its failure, the verdict, or why it is undecided
 };
 
 /// The names that a text about a finding needs.

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
@@ -169,6 +171,21 @@ class StoredTwice final : public Check {
     return away <= behind - before;
   }
 
+  /// The steepest index that has passed 2 by less than rounding tells on the way to what the question compares: between
+  /// the two runs of one curve, or since either family's first step. 0: none has.
+  static double untold_on_the_way(const Evidence& evidence, const LoopQuestion& question) {
+    const auto orbit = static_cast<std::size_t>(question.orbit);
+    const auto segment = static_cast<std::size_t>(question.segment);
+    const auto between = [&](const TreeFamily& family, std::size_t a, std::size_t b) {
+      return untold_between(evidence, family, std::min(a, b), std::max(a, b));
+    };
+    const TreeFamily& family = evidence.family(question.family);
+    if (question.family == question.beside) return between(family, orbit, segment);
+    const TreeFamily& beside = evidence.family(question.beside);
+    return std::max(between(family, evidence.tree.first_step_of(family), orbit),
+                    between(beside, evidence.tree.first_step_of(beside), segment));
+  }
+
   static void judge(const Evidence& evidence, const Pair& pair, std::span<const Answered> answered,
                     std::vector<Finding>& found) {
     const auto is_same = [](const Answered& a) { return a.reply.same; };
@@ -188,6 +205,11 @@ class StoredTwice final : public Check {
     const bool is_told = same >= static_cast<std::ptrdiff_t>(least_hits) ||
                          (same == 1 && pair.first != pair.second && !has_crossing_at(evidence, pair, x));
     finding.severity = severity_of(evidence, pair, is_told);
+    if (const double untold = untold_on_the_way(evidence, shown.question);
+        untold > 0.0 && finding.severity == Severity::contradiction) {
+      finding.severity = Severity::undecided;
+      finding.detail = fmt::format("an index of {:.1e} passes 2 on the way: families cross there to rounding", untold);
+    }
     finding.family = pair.first;
     finding.other_family = pair.first == pair.second ? -1 : pair.second;
     finding.period = x.value(Invariant::period);
