@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "crossing_outcome.hpp"
+#include "orbit_row.hpp"
 #include "orbweaver/bifurcation/directions.hpp"
 #include "orbweaver/bifurcation/subharmonic_crossing.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -253,6 +254,23 @@ bool add_places(Arrival& arrival, continuation::FamilyCurve& family, const bifur
 /// What harmonics may leave out of a sketch: far below the distances that directions are told by.
 constexpr double of_sketches = 1e-8;
 
+/// In the terms of the family that the crossing lies on, which has the orbit's symmetries: their fundamental map, and
+/// of its sectors in which families close after so many periods the one that the multipliers are nearest to.
+void tell_by_symmetries(const systems::System& system, const loop::Isotropy& isotropy, int multiplicity,
+                        bifurcation::CrossingFound& found) {
+  const std::optional<spectrum::Stability> stability = stability_of(system, found.crossing.point.loop, isotropy);
+  if (!stability) return;
+  double least = std::numeric_limits<double>::infinity();
+  for (const bifurcation::Sector& sector : bifurcation::sectors(stability->fundamental_order, multiplicity)) {
+    if (sector.multiplicity(stability->fundamental_order) != multiplicity) continue;
+    const double away = std::abs(bifurcation::index_deviation(system.structure(), *stability, sector).value);
+    if (!(away < least)) continue;
+    least = away;
+    found.event.function.sector = sector;
+  }
+  found.crossing.stability = *stability;
+}
+
 }  // namespace
 
 double not_repeated(const loop::Loop& loop, int times) {
@@ -301,11 +319,12 @@ bool locate_beneath(const std::shared_ptr<const systems::System>& system, const 
   arrival.period = met.period;
   arrival.level = continuation::level_of(*system, met);
   CrossingBeneath& beneath = arrival.beneath.emplace_back();
-  bifurcation::Crossing crossing = found->crossing;
-  crossing.point.loop = loop::at_first_reversor(system->structure(), orbit, loop::symmetry_tolerance);
+  bifurcation::CrossingFound there = *found;
+  there.crossing.point.loop = loop::at_first_reversor(system->structure(), orbit, loop::symmetry_tolerance);
   const loop::Isotropy isotropy =
-      loop::find_isotropy(system->structure(), crossing.point.loop, loop::symmetry_tolerance);
-  describe(*system, found->event, crossing, isotropy, beneath.crossing);
+      loop::find_isotropy(system->structure(), there.crossing.point.loop, loop::symmetry_tolerance);
+  tell_by_symmetries(*system, isotropy, arrival.multiplicity, there);
+  describe(*system, there.event, there.crossing, isotropy, beneath.crossing);
   beneath.crossing.limited_by = order_limited;
   beneath.orbit = orbit;
   return true;
