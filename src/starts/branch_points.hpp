@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,14 +8,14 @@
 
 namespace orbweaver::starts {
 
-/// The sign of the determinant of the equation bordered by the curve's direction; 0 where rounding has it.
-[[nodiscard]] int sign_of_determinant(const CurveEquations& curve, const CurveNode& node);
+/// Where other curves of equilibria pass through a step of a curve.
+struct BranchPoints {
+  std::vector<Eigen::VectorXd> places;  ///< along the step; those at one place once
+  bool is_undecided = false;            ///< what rounding, or steps that do not converge, leaves open there
+};
 
-/// Where another curve of equilibria passes through, between node n - 1 and node n, which may be such a place itself;
-/// `signs`: of the determinant at all nodes. `folds`: the parameter turns between them.
-[[nodiscard]] std::optional<Eigen::VectorXd> branch_point_before(const CurveEquations& curve,
-                                                                 const std::vector<CurveNode>& nodes,
-                                                                 const std::vector<int>& signs, std::size_t n,
-                                                                 bool folds);
+/// Of the steps from each node to the next, in their order. A node that is such a place counts to the step before it,
+/// the first one to the step behind.
+[[nodiscard]] std::vector<BranchPoints> branch_points(const CurveEquations& curve, const std::vector<CurveNode>& nodes);
 
 }  // namespace orbweaver::starts

@@ -25,6 +25,9 @@ inline constexpr double at_end = 1e-12;
 /// curve.
 inline constexpr double near_singular = 1e-5;
 inline constexpr double converged_beside = 1e-8;
+/// What these two are relative to: the error of places beside a singular one is the root of their rounding.
+[[nodiscard]] inline double known_to(const Eigen::VectorXd& x) { return std::sqrt(1.0 + x.norm()); }
+[[nodiscard]] inline double beside_singular(const Eigen::VectorXd& x) { return near_singular * known_to(x); }
 
 /// A place on the curve: the state, then the parameter.
 struct CurveNode {
@@ -108,9 +111,10 @@ std::optional<Eigen::VectorXd> zero_beside_curve(const CurveEquations& curve, Cu
   Value at_b{1.0, function(b.x)};
   Value beyond = at_b;
   if (!(at_a.value * at_b.value < 0.0)) return std::nullopt;
-  while ((b.x - a.x).norm() > near_singular * (1.0 + a.x.norm())) {
+  do {
     int steps = 0;
-    const auto x = curve.corrected(cubic_between(a, b, 0.5), (b.x - a.x).normalized(), steps, converged_beside);
+    const auto x =
+        curve.corrected(cubic_between(a, b, 0.5), (b.x - a.x).normalized(), steps, converged_beside / known_to(a.x));
     if (!x) return std::nullopt;
     CurveNode middle{*x, curve.direction(*x, a.direction)};
     const Value there{0.5 * (at_a.share + at_b.share), function(*x)};
@@ -118,7 +122,7 @@ std::optional<Eigen::VectorXd> zero_beside_curve(const CurveEquations& curve, Cu
     const bool is_before = there.value * at_a.value < 0.0;
     beyond = std::exchange(is_before ? at_b : at_a, there);
     (is_before ? b : a) = std::move(middle);
-  }
+  } while ((b.x - a.x).norm() > beside_singular(a.x));
   // The share as a quadratic function of the value, at 0.
   const auto weight = [](double own, double x, double y) { return x * y / ((x - own) * (y - own)); };
   const double share = at_a.share * weight(at_a.value, at_b.value, beyond.value) +

@@ -135,19 +135,17 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     return sum;
   };
   out.points.push_back({curve.equilibrium(nodes.front().x)});
-  std::vector<int> signs;
-  for (const CurveNode& node : nodes) signs.push_back(sign_of_determinant(curve, node));
+  const std::vector<BranchPoints> branches = branch_points(curve, nodes);
   for (std::size_t n = 1; n < nodes.size(); ++n) {
     const CurveNode& a = nodes[n - 1];
     const CurveNode& b = nodes[n];
     std::vector<Between> between;
-    const bool folds = a.direction(d) * b.direction(d) < 0.0;
-    const auto branch = branch_point_before(curve, nodes, signs, n, folds);
-    if (branch) between.push_back({*branch, EquilibriumKind::branch_point});
-    if (folds) {
+    const BranchPoints& branching = branches[n - 1];
+    for (const VectorXd& place : branching.places) between.push_back({place, EquilibriumKind::branch_point});
+    if ((a.direction(d) < 0.0) != (b.direction(d) < 0.0)) {
       const auto slope = [&](const VectorXd& at) { return curve.direction(at, a.direction)(d); };
       auto fold = zero_between(curve, a, b, slope);
-      if (branch || !fold) fold = zero_beside_curve(curve, a, b, slope);
+      if (!branching.places.empty() || !fold) fold = zero_beside_curve(curve, a, b, slope);
       if (fold) {
         out.folds.push_back(curve.equilibrium(*fold));
         between.push_back({*fold, EquilibriumKind::fold});
@@ -169,6 +167,7 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     for (const Between& point : between) out.points.push_back({curve.equilibrium(point.x), point.kind, point.period});
     if (n == begin) out.start = out.points.size();
     out.points.push_back({curve.equilibrium(b.x)});
+    out.points.back().may_branch_before = branching.is_undecided;
   }
   return out;
 }

@@ -1,8 +1,13 @@
 #include "orbweaver/starts/equilibrium_curve.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -112,6 +117,222 @@ TEST(EquilibriumCurve, KnowsABranchPointAtWhichTwoEigenvaluesPassZero) {
     const std::vector<EquilibriumPoint> found = branch_points(curve);
     ASSERT_EQ(found.size(), 1U) << start;
     EXPECT_NEAR(found[0].at.parameter, 0.0, 1e-12);
+  }
+}
+
+/// Of x' = g(m) x - x^3 in each coordinate: a branch point where a g is zero. The coordinates are o + u x.
+template <class Rates>
+class Pitchforks {
+ public:
+  static constexpr int dimension = Rates::count;
+  static constexpr int quantities = 0;
+  static systems::ModelInfo info() {
+    std::vector<std::string> names;
+    for (int i = 0; i < dimension; ++i) names.push_back(fmt::format("x{}", i));
+    return test::described("pitchforks", "pitchforks of one curve", names, {"m", "a", "b", "c", "o", "u"}, 0.0);
+  }
+  static systems::Structure structure(const systems::Bound&) {
+    systems::Structure structure;
+    structure.dimension = dimension;
+    structure.dissipative = true;
+    return structure;
+  }
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound)
+        : _m(bound["m"]), _zeros{bound["a"], bound["b"], bound["c"]}, _o(bound["o"]), _u(bound["u"]) {}
+    template <class S>
+    void field(const S* z, S* f) const {
+      const auto rates = Rates::of(_m, _zeros);
+      for (int i = 0; i < dimension; ++i) {
+        const S x = (z[i] - _o) / _u;
+        f[i] = (x * rates[static_cast<std::size_t>(i)] - x * x * x) * _u;
+      }
+    }
+
+   private:
+    P _m;
+    std::array<P, 3> _zeros;
+    P _o, _u;
+  };
+};
+
+struct OfThree {
+  static constexpr int count = 3;
+  template <class P>
+  static std::array<P, 3> of(const P& m, const std::array<P, 3>& zeros) {
+    return {m - zeros[0], (m - zeros[1]) * 40.0, m - zeros[2]};
+  }
+};
+
+struct ForthAndBack {
+  static constexpr int count = 1;
+  template <class P>
+  static std::array<P, 1> of(const P& m, const std::array<P, 3>& zeros) {
+    return {(m - zeros[0]) * (m - zeros[1])};
+  }
+};
+
+struct InTurn {
+  static constexpr int count = 2;
+  template <class P>
+  static std::array<P, 2> of(const P& m, const std::array<P, 3>& zeros) {
+    return {m - zeros[0], zeros[1] - m};
+  }
+};
+
+/// The rate changes its sign by a pole.
+struct OfAPole {
+  static constexpr int count = 1;
+  template <class P>
+  static std::array<P, 1> of(const P& m, const std::array<P, 3>& zeros) {
+    return {1e-3 / (m - zeros[0])};
+  }
+};
+
+template <class Rates>
+EquilibriumCurve of_pitchforks(double start, std::array<double, 3> zeros, double offset = 0.0, double unit = 1.0) {
+  systems::Bound bound = systems::bound_to(
+      Pitchforks<Rates>::info(),
+      {{"m", start}, {"a", zeros[0]}, {"b", zeros[1]}, {"c", zeros[2]}, {"o", offset}, {"u", unit}}, {});
+  bound.scalars.free = {"m"};
+  return follow_equilibrium(*systems::Registered<Pitchforks<Rates>>::make(bound),
+                            std::vector<double>(Rates::count, offset), {.parameter_from = -1.0, .parameter_to = 1.0});
+}
+
+std::vector<double> branching_parameters(const EquilibriumCurve& curve) {
+  std::vector<double> found;
+  for (const EquilibriumPoint& point : branch_points(curve)) found.push_back(point.at.parameter);
+  for (const EquilibriumPoint& point : curve.points) EXPECT_FALSE(point.may_branch_before);
+  return found;
+}
+
+TEST(EquilibriumCurve, SeveralBranchPointsWithinOneStepAreFound) {
+  using ::testing::DoubleNear;
+  for (const double start : {-0.5, -0.43, -0.2, 0.0, 0.02})
+    for (const auto& [offset, unit] :
+         {std::pair(0.0, 1.0), std::pair(0.0, 1e3), std::pair(0.0, 1e-3), std::pair(1e6, 1.0), std::pair(-3e3, 1.0)}) {
+      SCOPED_TRACE(fmt::format("{} {} {}", start, offset, unit));
+      const auto found = [&](double a, double b, double c) {
+        return branching_parameters(of_pitchforks<OfThree>(start, {a, b, c}, offset, unit));
+      };
+      const auto near = [](double at) { return DoubleNear(at, 1e-9); };
+      EXPECT_THAT(found(0.01, 0.03, 0.5), ::testing::ElementsAre(near(0.01), near(0.03), near(0.5)));
+      EXPECT_THAT(found(0.012, 0.06, 0.01), ::testing::ElementsAre(near(0.01), near(0.012), near(0.06)));
+      EXPECT_THAT(found(0.01, 0.01, 0.03), ::testing::ElementsAre(near(0.01), near(0.03)));
+      EXPECT_THAT(found(0.0, 0.0, 0.0), ::testing::ElementsAre(near(0.0)));
+      if (std::abs(offset) > 1e5) continue;
+      EXPECT_THAT(found(0.01 + 1e-6, 0.01, 0.5), ::testing::ElementsAre(near(0.01), near(0.01 + 1e-6), near(0.5)));
+    }
+}
+
+TEST(EquilibriumCurve, BranchPointsWhoseSignsCancelAreFound) {
+  for (const double start : {-0.5, -0.43, -0.2, 0.0}) {
+    SCOPED_TRACE(start);
+    const auto found = ::testing::ElementsAre(::testing::DoubleNear(0.01, 1e-9), ::testing::DoubleNear(0.03, 1e-9));
+    EXPECT_THAT(branching_parameters(of_pitchforks<ForthAndBack>(start, {0.01, 0.03, 0.0})), found);
+    EXPECT_THAT(branching_parameters(of_pitchforks<InTurn>(start, {0.01, 0.03, 0.0})), found);
+  }
+}
+
+TEST(EquilibriumCurve, ASignThatChangesWithoutAZeroIsUndecided) {
+  const EquilibriumCurve curve = of_pitchforks<OfAPole>(-0.5, {0.0123, 0.0, 0.0});
+  EXPECT_TRUE(branch_points(curve).empty());
+  EXPECT_EQ(std::count_if(curve.points.begin(), curve.points.end(),
+                          [](const EquilibriumPoint& point) { return point.may_branch_before; }),
+            1);
+}
+
+/// x_i' = m x_i - x_i^3 + x_{i-1} - 2 x_i + x_{i+1} between walls: branch points at m = 2 - 2 cos(pi k/(d + 1)).
+class Lattice {
+ public:
+  static constexpr int dimension = 60;
+  static constexpr int quantities = 0;
+  static systems::ModelInfo info() {
+    std::vector<std::string> names;
+    for (int i = 0; i < dimension; ++i) names.push_back(fmt::format("x{}", i));
+    return test::described("lattice", "a lattice of pitchforks", names, {"m"}, 0.0);
+  }
+  static systems::Structure structure(const systems::Bound&) {
+    systems::Structure structure;
+    structure.dimension = dimension;
+    structure.dissipative = true;
+    return structure;
+  }
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound) : _m(bound["m"]) {}
+    template <class S>
+    void field(const S* z, S* f) const {
+      for (int i = 0; i < dimension; ++i) {
+        f[i] = z[i] * (_m - 2.0) - z[i] * z[i] * z[i];
+        if (i > 0) f[i] = f[i] + z[i - 1];
+        if (i + 1 < dimension) f[i] = f[i] + z[i + 1];
+      }
+    }
+
+   private:
+    P _m;
+  };
+};
+
+TEST(EquilibriumCurve, BranchPointsInManyDimensionsAreFound) {
+  for (const double start : {-0.3, 0.0}) {
+    systems::Bound bound = systems::bound_to(Lattice::info(), {{"m", start}}, {});
+    bound.scalars.free = {"m"};
+    const EquilibriumCurve curve =
+        follow_equilibrium(*systems::Registered<Lattice>::make(bound), std::vector<double>(Lattice::dimension, 0.0),
+                           {.parameter_from = -0.5, .parameter_to = 0.7});
+    const std::vector<double> found = branching_parameters(curve);
+    ASSERT_EQ(found.size(), 16U);
+    for (std::size_t k = 1; k <= found.size(); ++k)
+      EXPECT_NEAR(found[k - 1], 2.0 - 2.0 * std::cos(std::numbers::pi * static_cast<double>(k) / 61.0), 1e-9);
+  }
+}
+
+/// x' = m - x^2, which turns at x = 0, and y' = (x - 0.03) (x + 0.04) y - y^3.
+class FoldBetweenPitchforks {
+ public:
+  static constexpr int dimension = 2;
+  static constexpr int quantities = 0;
+  static systems::ModelInfo info() {
+    return test::described("fold_between", "a fold between two branch points", {"x", "y"}, {"m"}, 0.0);
+  }
+  static systems::Structure structure(const systems::Bound&) {
+    systems::Structure structure;
+    structure.dimension = dimension;
+    structure.dissipative = true;
+    return structure;
+  }
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound) : _m(bound["m"]) {}
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = -z[0] * z[0] + _m;
+      f[1] = (z[0] - 0.03) * (z[0] + 0.04) * z[1] - z[1] * z[1] * z[1];
+    }
+
+   private:
+    P _m;
+  };
+};
+
+TEST(EquilibriumCurve, AFoldBetweenBranchPointsWithinOneStepIsFoundWithThem) {
+  for (const double start : {0.25, 0.35, 0.4}) {
+    SCOPED_TRACE(start);
+    systems::Bound bound = systems::bound_to(FoldBetweenPitchforks::info(), {{"m", start}}, {});
+    bound.scalars.free = {"m"};
+    const EquilibriumCurve curve =
+        follow_equilibrium(*systems::Registered<FoldBetweenPitchforks>::make(bound),
+                           std::vector<double>{std::sqrt(start), 0.0}, {.parameter_from = -1.0, .parameter_to = 1.0});
+    ASSERT_EQ(curve.folds.size(), 1U);
+    EXPECT_NEAR(curve.folds[0].state[0], 0.0, 1e-7);
+    EXPECT_THAT(branching_parameters(curve), ::testing::UnorderedElementsAre(::testing::DoubleNear(0.0009, 1e-9),
+                                                                             ::testing::DoubleNear(0.0016, 1e-9)));
   }
 }
 

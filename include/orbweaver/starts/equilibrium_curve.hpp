@@ -32,7 +32,8 @@ enum class EquilibriumKind {
 struct EquilibriumPoint {
   Equilibrium at;
   EquilibriumKind kind = EquilibriumKind::regular;
-  double period = 0.0;  ///< of the small oscillations at a Hopf point
+  double period = 0.0;             ///< of the small oscillations at a Hopf point
+  bool may_branch_before = false;  ///< whether other curves pass through the step to this point is not told
 };
 
 /// Where a pair of eigenvalues passes the imaginary axis: a family of periodic orbits begins.
@@ -67,8 +68,9 @@ struct EquilibriumCurveOptions {
 /// value, to both sides: Keller's pseudo-arclength continuation (doi:10.1016/B978-0-12-587350-4.50017-3). Hopf points
 /// are zeros of the product of the sums of two eigenvalues (the determinant of the bialternate product: Kuznetsov,
 /// Elements of Applied Bifurcation Theory, section 10.2.2) where the pair that cancels is imaginary. Branch points are
-/// zeros of the determinant of the equation bordered by the curve's direction (Keller, the same), or, where two real
-/// eigenvalues pass zero together, of the lesser one; the other curves are not followed. Throws MisuseError
+/// zeros of the determinant of the equation bordered by the curve's direction (Keller, the same); steps are halved until
+/// no part has more than one, or several real eigenvalues pass zero at one place. The other curves are not followed.
+/// Throws MisuseError
 /// for a system without a parameter that moves, NumericalError where no equilibrium is near the start.
 [[nodiscard]] EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<const double> start,
                                                   const EquilibriumCurveOptions& options = {});
