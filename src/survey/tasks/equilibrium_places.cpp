@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
 #include <numbers>
+#include <string>
+#include <tuple>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace orbweaver::survey {
 
@@ -45,6 +50,17 @@ std::vector<Complex> eigenvalues_of(const LinearModes& modes) {
   }
   std::sort(values.begin(), values.end(), comes_before);
   return values;
+}
+
+/// Periods of the pairs that `eigenvalues_of` has on the imaginary axis, and how many have each; the longest first. An
+/// equilibrium that lies on a Hopf point has some among the undecided, since nothing holds their real part at 0.
+std::vector<std::pair<double, int>> periods_of(const LinearModes& modes) {
+  std::map<double, int, std::greater<>> counts;
+  for (const starts::Oscillation& oscillation : modes.oscillations)
+    counts[oscillation.period] += oscillation.multiplicity();
+  for (const starts::UndecidedEigenvalues& undecided : modes.undecided)
+    if (undecided.mean.real() == 0.0 && undecided.mean.imag() != 0.0) counts[undecided.period()] += undecided.count;
+  return {counts.begin(), counts.end()};
 }
 
 /// The pair nearest to +-2 pi i/T, which passes the axis there, becomes an oscillation.
@@ -110,10 +126,8 @@ EquilibriumPlace equilibrium_place(const systems::System& system, const std::vec
   const std::size_t most = point.size() / 2;
   place.periods.assign(most, nothing);
   place.multiplicity.assign(most, -1);
-  for (std::size_t n = 0; n < modes.oscillations.size(); ++n) {
-    place.periods[n] = modes.oscillations[n].period;
-    place.multiplicity[n] = modes.oscillations[n].multiplicity();
-  }
+  const std::vector<std::pair<double, int>> periods = periods_of(modes);
+  for (std::size_t n = 0; n < periods.size(); ++n) std::tie(place.periods[n], place.multiplicity[n]) = periods[n];
   return place;
 }
 
@@ -131,13 +145,15 @@ std::vector<EquilibriumPlace> places_on(const systems::System& system, const sta
     place.step = static_cast<int>(places.size() - 1) - static_cast<int>(curve.start);
     place.kind = point.kind;
     place.parameter = point.at.parameter;
+    if (point.may_branch_before) place.note = may_branch_before;
   }
   for (std::size_t n = curve.start + 1; n < places.size(); ++n)
     places[n].arclength = places[n - 1].arclength + distance(curve.points[n - 1].at, curve.points[n].at);
   for (std::size_t n = curve.start; n-- > 0;)
     places[n].arclength = places[n + 1].arclength - distance(curve.points[n].at, curve.points[n + 1].at);
   places.front().note = curve.ends.front();
-  places.back().note = curve.ends.back();
+  std::string& last = places.back().note;
+  last = last.empty() ? curve.ends.back() : fmt::format("{}; {}", last, curve.ends.back());
   return places;
 }
 

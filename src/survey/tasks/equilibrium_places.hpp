@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "orbweaver/starts/equilibrium_curve.hpp"
@@ -9,12 +10,16 @@
 
 namespace orbweaver::survey {
 
+/// How the note of a point begins where what branches off on the step to it is not told.
+inline constexpr std::string_view may_branch_before = "undecided: other equilibria may branch off on the step to here";
+
 /// The equilibrium with the system's own parameters. Of a driven system all coordinates but the phase rest, and the
 /// phase's eigenvalue, 0, says nothing of its stability.
 [[nodiscard]] EquilibriumPlace equilibrium_place(const systems::System& system, const std::vector<double>& point,
                                                  starts::LinearModes modes);
 
-/// All points of a curve of equilibria, with their linear modes. At a Hopf point the pair that passes the axis counts
+/// All points of a curve of equilibria, with their linear modes. A pair whose real part is 0 is one of the periods,
+/// whether or not anything holds it there. At a Hopf point the pair that passes the axis counts
 /// as imaginary, at a fold the least real eigenvalue as 0.
 [[nodiscard]] std::vector<EquilibriumPlace> places_on(const systems::System& system,
                                                       const starts::EquilibriumCurve& curve);

@@ -5,17 +5,20 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "orbweaver/survey/tree/naming.hpp"
+#include "tasks/equilibrium_places.hpp"
 #include "witness/check.hpp"
 
 namespace orbweaver::survey {
 
 /// Where another curve of equilibria passes through one that was followed, some other curve of the archive must have
-/// the same point: else its equilibria, and the families that begin at them, are missing.
+/// the same point: else its equilibria, and the families that begin at them, are missing. Where that is not told the
+/// curve's note says so.
 class EquilibriumBranches final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -23,28 +26,41 @@ class EquilibriumBranches final : public Check {
     std::vector<Finding> found;
     const archive::Table& table = evidence.tree.atlas.equilibria();
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      if (table.texts("kind")[row] != "branch-point" || is_shared(evidence, table, row)) continue;
-      Finding finding;
-      finding.kind = FindingKind::unknown_branch;
-      finding.severity = Severity::undecided;
-      finding.level = table.reals("parameter")[row];
-      finding.detail =
-          fmt::format("{} at {} = {:.9g}", equilibrium_name(static_cast<int>(table.integers("equilibrium")[row])),
-                      evidence.system->family_scalars().free.front(), finding.level);
-      found.push_back(finding);
+      if (table.texts("note")[row].starts_with(may_branch_before)) {
+        Finding finding = finding_at(evidence, table, row, FindingKind::undecided_event);
+        finding.detail += ": rounding hides whether other equilibria branch off on the curve's step to there";
+        found.push_back(std::move(finding));
+      }
+      if (table.texts("kind")[row] == "branch-point" && !is_shared(evidence, table, row))
+        found.push_back(finding_at(evidence, table, row, FindingKind::unknown_branch));
     }
     return found;
   }
 
  private:
+  static Finding finding_at(const Evidence& evidence, const archive::Table& table, std::size_t row, FindingKind kind) {
+    Finding finding;
+    finding.kind = kind;
+    finding.severity = Severity::undecided;
+    finding.level = table.reals("parameter")[row];
+    finding.detail =
+        fmt::format("{} at {} = {:.9g}", equilibrium_name(static_cast<int>(table.integers("equilibrium")[row])),
+                    evidence.system->family_scalars().free.front(), finding.level);
+    return finding;
+  }
+
   /// Whether a curve of another equilibrium, or the same curve elsewhere, has a branch point there.
   static bool is_shared(const Evidence& evidence, const archive::Table& table, std::size_t row) {
     const std::vector<double> here = place(evidence, table, row);
     double size = 1.0;
     for (const double x : here) size = std::max(size, std::abs(x));
+    const double bound = same_place * std::sqrt(size);
     for (std::size_t other = 0; other < table.rows(); ++other) {
       if (other == row || table.texts("kind")[other] != "branch-point") continue;
-      if (evidence.distance_between(here, place(evidence, table, other)) <= same_place * size) return true;
+      if (table.integers("equilibrium")[other] == table.integers("equilibrium")[row] &&
+          std::abs(table.reals("arclength")[other] - table.reals("arclength")[row]) <= elsewhere * bound)
+        continue;
+      if (evidence.distance_between(here, place(evidence, table, other)) <= bound) return true;
     }
     return false;
   }
@@ -61,8 +77,10 @@ class EquilibriumBranches final : public Check {
     return out;
   }
 
-  /// Relative. Two curves that touch are located there to the root of their rounding.
+  /// Two curves that touch are located there to the root of their rounding, which is relative to their coordinates.
   static constexpr double same_place = 1e-6;
+  /// Of that distance: points of one curve that are no further apart along it are neighbours.
+  static constexpr double elsewhere = 100.0;
 };
 
 }  // namespace orbweaver::survey
