@@ -128,9 +128,9 @@ class Search {
     const int across = std::abs(a.to_the_right - b.to_the_right);
     const int events = static_cast<int>(passing.size()) + (turns ? 1 : 0);
     if (as_many && changes == odd) {
-      if (events == 0) return look_closer(a, b, looks);
+      if (events == 0) return look_closer(a, b, passing, looks);
       if (turns && events == 1) return add_one(a, b);
-      if (events == 2 && turns && !changes) return;  // a fold
+      if (events == 2 && turns && !changes) return look_closer(a, b, passing, looks);  // at the fold one passes
     } else if (!as_many && !changes && across == (turns ? 1 : 0)) {
       return;  // real ones have met, away from zero
     }
@@ -184,18 +184,20 @@ class Search {
     return looked_at(_curve, {*x, _curve.direction(*x, a.node.direction)});
   }
 
-  /// Where nothing passes from end to end: whether something passes and comes back.
-  void look_closer(const Looked& a, const Looked& b, int looks) {
+  /// Whether anything but `passing` passes and comes back.
+  void look_closer(const Looked& a, const Looked& b, const std::vector<std::size_t>& passing, int looks) {
     if (looks == most_looks || a.real.empty() || a.orientation == 0 || b.orientation == 0) return;
     const auto middle = middle_of(a, b);
     if (!middle || middle->real.size() != a.real.size()) return;
-    for (std::size_t k = 0; k < a.real.size(); ++k)
+    for (std::size_t k = 0; k < a.real.size(); ++k) {
+      if (std::find(passing.begin(), passing.end(), k) != passing.end()) continue;
       // Halfway to zero from an end it is never nearer to zero than that, unless it slows down, turns or passes.
       if (!are_of_one_sign(a.real[k], middle->real[k]) ||
           2.0 * std::abs(middle->real[k]) < std::max(std::abs(a.real[k]), std::abs(b.real[k]))) {
         between(a, *middle, looks + 1);
         return between(*middle, b, looks + 1);
       }
+    }
   }
 
   /// Unless an eigenvalue has another sign by a jump, or a pole. At the place itself all may be zero.

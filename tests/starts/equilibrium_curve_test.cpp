@@ -322,7 +322,7 @@ class FoldBetweenPitchforks {
 };
 
 TEST(EquilibriumCurve, AFoldBetweenBranchPointsWithinOneStepIsFoundWithThem) {
-  for (const double start : {0.25, 0.35, 0.4}) {
+  for (const double start : {0.25, 0.3, 0.35, 0.4}) {
     SCOPED_TRACE(start);
     systems::Bound bound = systems::bound_to(FoldBetweenPitchforks::info(), {{"m", start}}, {});
     bound.scalars.free = {"m"};
