@@ -20,11 +20,8 @@
 #include "orbweaver/survey/run/scaled_scene.hpp"
 #include "orbweaver/survey/tree/expected_starts.hpp"
 #include "orbweaver/systems/field_cost.hpp"
-#include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "orbweaver/systems/undeclared_symmetries.hpp"
-#include "orbweaver/systems/undeclared_turns.hpp"
 #include "structure_text.hpp"
 
 namespace orbweaver::drivers {
@@ -97,7 +94,7 @@ std::vector<std::vector<double>> resting_points(const scene::Scene& scene, const
   if (grid.size() > static_cast<std::size_t>(ideal->dimension()))
     grid.resize(static_cast<std::size_t>(ideal->dimension()));
   std::vector<std::vector<double>> points = starts::find_fixed_points(*ideal, grid);
-  for (std::vector<double>& point : points) point.push_back(0.0);
+  for (std::vector<double>& point : points) point.resize(static_cast<std::size_t>(system.dimension()), 0.0);
   return points;
 }
 
@@ -124,7 +121,7 @@ std::string families_text(const systems::System& system) {
 }
 
 void print_simulated(const scene::Scene& scene, const systems::System& system,
-                     const std::vector<std::vector<double>>& points) {
+                     const std::vector<std::vector<double>>& points, const survey::Undeclared& undeclared) {
   Lines lines{{"terms", system.info().meaning}};
   for (const systems::Effect& effect : system.info().effects)
     if (std::count(scene.system.effects.begin(), scene.system.effects.end(), effect.name) > 0)
@@ -132,17 +129,16 @@ void print_simulated(const scene::Scene& scene, const systems::System& system,
   lines.emplace_back("dimension", fmt::format("{} coordinates", system.dimension()));
   const Lines holds = structure_lines(system.info(), system.structure(), families_text(system));
   lines.insert(lines.end(), holds.begin(), holds.end());
-  for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
-    lines.emplace_back("not declared", symmetry);
-  if (const std::vector<std::string> moved = systems::undeclared_translations(system); !moved.empty())
-    lines.emplace_back(
-        "not declared",
-        fmt::format("perhaps a momentum: the field stays the same along translations of {}", fmt::join(moved, ", ")));
-  if (const std::vector<std::string> turned = systems::undeclared_turns(system, points); !turned.empty())
+  for (const std::string& symmetry : undeclared.symmetries) lines.emplace_back("not declared", symmetry);
+  if (!undeclared.translated.empty())
+    lines.emplace_back("not declared",
+                       fmt::format("perhaps a momentum: the field stays the same along translations of {}",
+                                   fmt::join(undeclared.translated, ", ")));
+  if (!undeclared.turned.empty())
     lines.emplace_back("not declared",
                        fmt::format("perhaps an angular momentum: the field stays the same under turns of {}",
-                                   fmt::join(turned, ", ")));
-  if (systems::may_be_symplectic(system, points))
+                                   fmt::join(undeclared.turned, ", ")));
+  if (undeclared.may_be_symplectic)
     lines.emplace_back(
         "not declared",
         fmt::format("perhaps {}: eigenvalues at every equilibrium come in pairs +-lambda",
@@ -170,6 +166,19 @@ std::string sweep_text(const scene::Sweep& sweep) {
   return fmt::format("small oscillations {}; smallest eigenvalue {}", range, step);
 }
 
+/// Equilibria that are listed.
+constexpr std::size_t most_resting = 12;
+
+/// Where an equilibrium is and how it oscillates, which tells what periods the survey begins with.
+std::string resting_text(const survey::ExpectedEquilibrium& found, double period_limit) {
+  std::vector<std::string> periods;
+  for (const double period : found.periods)
+    periods.push_back(fmt::format("{:.6g}{}", period, period > period_limit ? " (beyond limits.period)" : ""));
+  const std::string oscillations =
+      periods.empty() ? "no small oscillations" : fmt::format("small oscillations of T = {}", fmt::join(periods, ", "));
+  return fmt::format("at {}: {}; {}", found.text, oscillations, found.stability);
+}
+
 std::string named(const std::string& name) { return name.empty() ? "" : ", " + name; }
 
 void print_starts(const scene::Scene& scene, const systems::System& system, const survey::ExpectedStarts& expected) {
@@ -192,10 +201,15 @@ void print_starts(const scene::Scene& scene, const systems::System& system, cons
   else if (!points.grid.empty())
     sought = fmt::format("{}: {}", grid, fmt::join(axes, "; "));
   Lines lines{{"equilibria", sought}};
+  for (std::size_t n = 0; n < std::min(most_resting, expected.resting.size()); ++n)
+    lines.emplace_back(n == 0 ? "found" : "", resting_text(expected.resting[n], scene.limits.period));
+  if (expected.resting.size() > most_resting)
+    lines.emplace_back("", fmt::format("and {} more", expected.resting.size() - most_resting));
+  const std::size_t unnamed = lines.size();
   for (const scene::FixedPoints::Names& named : points.names) {
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < named.point.size(); ++i) texts.push_back(value_text(system, i, named.point[i]));
-    lines.emplace_back(lines.size() == 1 ? "names" : "",
+    lines.emplace_back(lines.size() == unnamed ? "names" : "",
                        fmt::format("at ({}): {}", fmt::join(texts, ", "), name_list(points, named.names)));
   }
   lines.emplace_back("sweep", sweep_text(scene.sweep));
@@ -272,9 +286,44 @@ void print_survey(const scene::Scene& scene) {
                {"team size", fmt::format("{} rank{} a task", survey.team_size, survey.team_size == 1 ? "" : "s")}});
 }
 
-std::string energy_text(const scene::Limits& limits) {
+bool has_given_orbits(const scene::Scene& scene) {
+  return !scene.states.empty() || !scene.orbits.empty() || !scene.loops.empty() || scene.recurrences;
+}
+
+/// Whether every family would begin at an equilibrium of which `is_beyond` holds.
+template <class Beyond>
+bool all_begin(const scene::Scene& scene, const survey::ExpectedStarts& expected, const Beyond& is_beyond) {
+  return scene.system.moving.free.empty() && !has_given_orbits(scene) && !expected.resting.empty() &&
+         std::all_of(expected.resting.begin(), expected.resting.end(), is_beyond);
+}
+
+/// Behind a limit that leaves all families out.
+std::string leaves_all_out(bool does, const std::string& what) {
+  return does ? fmt::format("; {}, and nothing is followed: make it wider", what) : "";
+}
+
+std::string period_text(const scene::Scene& scene, const survey::ExpectedStarts& expected) {
+  const double limit = scene.limits.period;
+  if (std::isinf(limit)) return "any";
+  const bool any_oscillates = std::any_of(expected.resting.begin(), expected.resting.end(),
+                                          [](const auto& found) { return !found.periods.empty(); });
+  const bool all_beyond =
+      any_oscillates && all_begin(scene, expected, [&](const survey::ExpectedEquilibrium& found) {
+        return std::all_of(found.periods.begin(), found.periods.end(), [&](double period) { return period > limit; });
+      });
+  return fmt::format("up to {}{}", limit, leaves_all_out(all_beyond, "all small oscillations take longer"));
+}
+
+std::string energy_range(const scene::Limits& limits) {
   if (std::isinf(limits.energy_from) && std::isinf(limits.energy_to)) return "any";
   return fmt::format("from {} to {}", limits.energy_from, limits.energy_to);
+}
+
+std::string energy_text(const scene::Scene& scene, const survey::ExpectedStarts& expected) {
+  const bool all_beyond = all_begin(scene, expected, [&](const survey::ExpectedEquilibrium& found) {
+    return found.energy < scene.limits.energy_from || found.energy > scene.limits.energy_to;
+  });
+  return energy_range(scene.limits) + leaves_all_out(all_beyond, "all equilibria lie outside");
 }
 
 std::string guards_text(const scene::Limits& limits, const systems::Structure& structure) {
@@ -295,18 +344,23 @@ std::string task_time_text(double seconds) {
   return std::isinf(seconds) ? "any" : fmt::format("tasks that take more than {} s are put aside", seconds);
 }
 
-std::string parameter_range_text(const scene::Limits& limits, const std::vector<std::string>& free) {
+std::string parameter_range_text(const scene::Limits& limits, const systems::System& system) {
+  const std::vector<std::string>& free = system.family_scalars().free;
   if (free.empty()) return "none moves";
+  const double here = system.parameters().at(free.front());
   const bool any = std::isinf(limits.parameter_from) && std::isinf(limits.parameter_to);
+  const bool outside = here < limits.parameter_from || here > limits.parameter_to;
   return any ? fmt::format("{} any", free.front())
-             : fmt::format("{} from {} to {}", free.front(), limits.parameter_from, limits.parameter_to);
+             : fmt::format(
+                   "{} from {} to {}{}", free.front(), limits.parameter_from, limits.parameter_to,
+                   outside ? fmt::format("; {} = {} of system.parameters lies outside", free.front(), here) : "");
 }
 
-void print_limits(const scene::Scene& scene, const systems::System& system) {
+void print_limits(const scene::Scene& scene, const systems::System& system, const survey::ExpectedStarts& expected) {
   const scene::Limits& limits = scene.limits;
-  print_group("Limits", {{"period", std::isinf(limits.period) ? "any" : fmt::format("up to {}", limits.period)},
-                         {"energy", energy_text(limits)},
-                         {"parameter", parameter_range_text(limits, system.family_scalars().free)},
+  print_group("Limits", {{"period", period_text(scene, expected)},
+                         {"energy", energy_text(scene, expected)},
+                         {"parameter", parameter_range_text(limits, system)},
                          {"guards", guards_text(limits, system.structure())},
                          {"families", fmt::format("at most {}", limits.families)},
                          {"steps", fmt::format("at most {} a family", limits.steps)},
@@ -391,11 +445,11 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   const std::vector<std::vector<double>> points = resting_points(scene, system);
   fmt::print("{}: a valid scene, \"{}\"\n", core::printable(options.file.string()), scene.name);
   print_system(scene, system, scaled.system()->scales());
-  print_simulated(scene, system, points);
+  print_simulated(scene, system, points, expected.undeclared);
   print_starts(scene, system, expected);
   print_continuation(scene, system, scaled.system()->scales());
   print_survey(scene);
-  print_limits(scene, system);
+  print_limits(scene, system, expected);
   print_events(scene);
   print_outputs(scene, system);
   print_cost(scene, system);

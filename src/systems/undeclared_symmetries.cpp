@@ -20,6 +20,10 @@ using Eigen::VectorXd;
 
 constexpr double same = 1e-10;
 constexpr int states_tried = 6;
+/// Of the states around a point. Far from it one stiff term may be all of the field that double holds.
+constexpr double sizes_tried[] = {1.0, 1e-3};
+/// Of the point's coordinates: nearer to it differences are rounding's.
+constexpr double least_size_tried = 1e-5;
 /// Elements of the group of declared symmetries that are looked at: larger groups have no undeclared change of signs
 /// that anybody misses.
 constexpr std::size_t most_elements = 200;
@@ -91,19 +95,22 @@ bool holds(const System& system, const Candidate& candidate) {
   const auto& [point, signs, shift, reversing] = candidate;
   const std::vector<double> centre(point.data(), point.data() + point.size());
   bool compared = false;
-  for (const std::vector<double>& state : states_around(system.structure(), {centre}, states_tried, 1.0)) {
-    const VectorXd z = Eigen::Map<const VectorXd>(state.data(), point.size());
-    const VectorXd image = point + signs.cwiseProduct(z - point) + shift;
-    const std::vector<VectorXd> fields = fields_at(system, z);
-    const std::vector<VectorXd> of_image = fields_at(system, image);
-    for (std::size_t n = 0; n < fields.size(); ++n) {
-      const VectorXd& f = fields[n];
-      const VectorXd& f_of_image = of_image[n];
-      if (!f.allFinite() || !f_of_image.allFinite()) continue;
-      const VectorXd expected = (reversing ? -1.0 : 1.0) * signs.cwiseProduct(f);
-      if (((f_of_image - expected).array().abs() > same * f.array().abs().max(f_of_image.array().abs())).any())
-        return false;
-      compared = true;
+  for (const double size : sizes_tried) {
+    if (size < least_size_tried * point.lpNorm<Eigen::Infinity>()) continue;
+    for (const std::vector<double>& state : states_around(system.structure(), {centre}, states_tried, size)) {
+      const VectorXd z = Eigen::Map<const VectorXd>(state.data(), point.size());
+      const VectorXd image = point + signs.cwiseProduct(z - point) + shift;
+      const std::vector<VectorXd> fields = fields_at(system, z);
+      const std::vector<VectorXd> of_image = fields_at(system, image);
+      for (std::size_t n = 0; n < fields.size(); ++n) {
+        const VectorXd& f = fields[n];
+        const VectorXd& f_of_image = of_image[n];
+        if (!f.allFinite() || !f_of_image.allFinite()) continue;
+        const VectorXd expected = (reversing ? -1.0 : 1.0) * signs.cwiseProduct(f);
+        if (((f_of_image - expected).array().abs() > same * f.array().abs().max(f_of_image.array().abs())).any())
+          return false;
+        compared = true;
+      }
     }
   }
   return compared;

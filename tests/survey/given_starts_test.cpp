@@ -132,6 +132,18 @@ TEST_F(GivenStarts, FromArchivesThatDoNotFitAreRefused) {
   EXPECT_THAT(refusal("orbits: [{archive: damaged.h5, family: Out-Phase, " + near), HasSubstr("changed row"));
 }
 
+TEST(StartsOfStates, NoStartAtAllIsRefusedWithTheKeysToGive) {
+  const core::Communicator comm;
+  const fs::path folder = test::fresh_folder(fmt::format("no_start{}", comm.size()), comm.get());
+  const scene::Scene scene = scene_in(comm, folder, "");
+  try {
+    static_cast<void>(survey::expected_starts(scene, *scene::bound_system(scene.system)));
+    ADD_FAILURE() << "accepted";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("give starts.fixed_points.grid"), HasSubstr("starts.states")));
+  }
+}
+
 // In the order of winding, period and energy, with names that say so, in whatever order the scene gives them.
 TEST(StartsOfStates, AreNumberedByWhatTheyAre) {
   const core::Communicator comm;

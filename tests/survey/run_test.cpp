@@ -348,6 +348,16 @@ TEST(RunSurvey, AFamilyBeyondALimitIsLeftOutByIt) {
   EXPECT_EQ(survey::ends_in(summary.families[0].end_reason), std::vector{survey::EndKind::period_limit});
 }
 
+TEST(RunSurvey, WhereLimitsLeaveAllFamiliesOutItSaysSo) {
+  const core::Communicator comm;
+  const auto folder = test::fresh_folder(own_folder(comm, "all_left_out"), comm.get());
+  const survey::Summary summary = run(comm, test::quick_scene({"limits.period=3"}), folder);
+  EXPECT_EQ(summary.failures, 0U);
+  if (!comm.is_root()) return;
+  EXPECT_EQ(summary.orbits, 0);
+  EXPECT_THAT(summary.remarks, ::testing::Contains(HasSubstr("every family begins beyond the scene's limits")));
+}
+
 TEST(RunSurvey, ASystemWithTwoConservedQuantitiesIsRefused) {
   const core::Communicator comm;
   const auto folder = test::fresh_folder(own_folder(comm, "two"), comm.get());

@@ -81,6 +81,17 @@ TEST(UndeclaredSymmetries, AreTurnsAboutAnAxis) {
     EXPECT_THAT(undeclared_turns(*make_system(name), origin), IsEmpty()) << name;
 }
 
+// A spring that hardens as those of machines do in SI units: 1 away the field is the quartic's to all digits.
+TEST(UndeclaredSymmetries, AreNotThoseOfOneStiffTermAlone) {
+  std::map<std::string, double> well{{"b", 0.0}, {"k1", 1.0}, {"k2", 3.0}, {"q", 1e12}, {"c", 1.0}, {"e", 0.0}};
+  for (const char* cubic : {"a2", "a3", "a4"}) well[cubic] = 0.0;
+  well["a1"] = 1.0;
+  EXPECT_THAT(undeclared_turns(*test::magnetic_well(well), origin), IsEmpty());
+  EXPECT_THAT(undeclared_symmetries(*test::magnetic_well(well), origin),
+              ElementsAre("the reversor (x, y, px, py) -> (x, y, -px, -py)",
+                          "the reversor (x, y, px, py) -> (x, -y, -px, py)"));
+}
+
 TEST(UndeclaredSymmetries, AreNotWhatIsDeclared) {
   for (const char* name : {"double_pendulum", "henon_heiles", "pcr3bp", "swinging_spring"})
     EXPECT_THAT(undeclared_symmetries(*make_system(name), origin), IsEmpty()) << name;

@@ -11,8 +11,8 @@ namespace orbweaver::systems {
 /// of declared ones is, S a change of the signs of some coordinates, p one of `points` (sizes dimension) and h zero or
 /// half a turn of one angle, as of a drive's phase: each as text, "the reversor (x, y, px, py) -> (x, y, -px, -py)".
 /// Reversors first, those with the fewest signs; of what these generate nothing more. The field's derivatives by the
-/// parameters that move must have them too. Compared at random states around p to 1e-10 of the field's size there.
-/// Empty for systems of more than `most_sign_changes` coordinates, of which there are too many.
+/// parameters that move must have them too. Compared at random states near p and farther away to 1e-10 of the field's
+/// size there. Empty for systems of more than `most_sign_changes` coordinates, of which there are too many.
 [[nodiscard]] std::vector<std::string> undeclared_symmetries(const System& system,
                                                              const std::vector<std::vector<double>>& points);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,11 +16,11 @@
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
+#include "orbweaver/starts/linear_modes.hpp"
 #include "orbweaver/survey/tree/expected_starts.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
+#include "orbweaver/survey/tree/undeclared.hpp"
 #include "orbweaver/systems/identities.hpp"
-#include "orbweaver/systems/undeclared_symmetries.hpp"
-#include "orbweaver/systems/undeclared_turns.hpp"
 #include "tasks/payload/keys.hpp"
 #include "tasks/payload/work.hpp"
 
@@ -67,39 +68,40 @@ void remark_resonances(const systems::System& system, const SweepOutcome& found,
           point_text(system, found.point), kernel.dimension, kernel.period * system.scales().time, kernel.detuning));
 }
 
-void remark_grid(const scene::Scene& scene, const systems::System& system, Summary& summary) {
-  if (scene.fixed_points.grid.empty()) return;
+/// The equilibria that the grid leads to.
+std::vector<std::vector<double>> remark_grid(const scene::Scene& scene, const systems::System& system,
+                                             Summary& summary) {
+  if (scene.fixed_points.grid.empty()) return {};
   std::vector<std::vector<double>> passed_over;
-  (void)starts::find_fixed_points(system, scene.fixed_points.grid, &passed_over);
+  std::vector<std::vector<double>> found = starts::find_fixed_points(system, scene.fixed_points.grid, &passed_over);
   if (!passed_over.empty())
     summary.remarks.push_back(
         fmt::format("points of starts.fixed_points.grid passed over, where the field is not finite: {}, the first {}",
                     passed_over.size(), point_text(system, passed_over.front())));
+  return found;
 }
 
 /// Crossings that an undeclared symmetry forces look like accidents, and its circles are traced twice; without a
 /// symplectic form whole kinds of crossings are not looked for.
-void remark_undeclared(const systems::System& system, const std::vector<SweepOutcome>& equilibria, Summary& summary) {
-  std::vector<std::vector<double>> points;
-  for (const SweepOutcome& found : equilibria) points.push_back(found.point);
-  for (const std::string& symmetry : systems::undeclared_symmetries(system, points))
+void remark_undeclared(const systems::System& system, const Undeclared& undeclared, Summary& summary) {
+  for (const std::string& symmetry : undeclared.symmetries)
     summary.remarks.push_back(
         fmt::format("the field has {}, which the system does not declare: with it the survey is faster, and says which "
                     "crossings it forces",
                     symmetry));
-  if (const std::vector<std::string> moved = systems::undeclared_translations(system); !moved.empty())
+  if (!undeclared.translated.empty())
     summary.remarks.push_back(
         fmt::format("the field stays the same along translations of {}: declare the momentum that is conserved with "
                     "them, without which orbits and crossings are not isolated (docs/your_own_system.md, \"More "
                     "conserved quantities\")",
-                    fmt::join(moved, ", ")));
-  if (const std::vector<std::string> turned = systems::undeclared_turns(system, points); !turned.empty())
+                    fmt::join(undeclared.translated, ", ")));
+  if (!undeclared.turned.empty())
     summary.remarks.push_back(fmt::format(
         "the field stays the same under turns of {}: with them an angular momentum is conserved, and "
         "orbits and crossings are not isolated: take coordinates in which it is one (docs/your_own_system.md, "
         "\"More conserved quantities\")",
-        fmt::join(turned, ", ")));
-  if (systems::may_be_symplectic(system, points))
+        fmt::join(undeclared.turned, ", ")));
+  if (undeclared.may_be_symplectic)
     summary.remarks.push_back(fmt::format(
         "the eigenvalues at every equilibrium come in pairs +-lambda, as those of Hamiltonian systems do: if this is "
         "one, declare {}, without which its period doublings and subharmonics are not found",
@@ -197,6 +199,7 @@ namespace {
 struct Starts {
   std::vector<std::vector<double>> equilibria;  ///< also those that no family of the system begins at
   std::vector<SweepWork> given;
+  std::vector<std::vector<double>> states;  ///< that the scene gives
 };
 
 /// Throws InputError for whatever a survey is refused for before its first task.
@@ -204,11 +207,10 @@ Starts starts_of(const scene::Scene& scene, const systems::System& system) {
   Starts starts;
   if (!scene.fixed_points.grid.empty()) starts.equilibria = starts::find_fixed_points(system, scene.fixed_points.grid);
   starts.given = given_starts(scene, system);
-  std::vector<std::vector<double>> known;
   for (const SweepWork& work : starts.given)
-    if (!work.given.front().is_return()) known.push_back(work.point);
-  if (scene.recurrences) known.push_back(scene.recurrences->state);
-  systems::require_identities(system, starts.equilibria, known);
+    if (!work.given.front().is_return()) starts.states.push_back(work.point);
+  if (scene.recurrences) starts.states.push_back(scene.recurrences->state);
+  systems::require_identities(system, starts.equilibria, starts.states);
   const bool begins_at_equilibria = has_equilibrium_families(system);
   if (!starts.given.empty() || (begins_at_equilibria && !starts.equilibria.empty())) return starts;
   if (scene.recurrences)
@@ -217,11 +219,32 @@ Starts starts_of(const scene::Scene& scene, const systems::System& system) {
         "larger tolerance");
   if (!begins_at_equilibria)
     throw core::InputError("a conservative family in a parameter starts at an orbit: give one with starts.states");
+  if (scene.fixed_points.grid.empty())
+    throw core::InputError(
+        "starts: no start is given: give starts.fixed_points.grid, values of each coordinate near an equilibrium, or "
+        "an orbit with starts.states");
   throw core::InputError(
       system.structure().driven
           ? "nothing rests at every phase of the drive near starts.fixed_points.grid: give the drive the amplitude 0 "
             "and let it move (continuation.free), or an orbit with starts.states"
           : "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
+}
+
+ExpectedEquilibrium expected_equilibrium(const systems::System& system, const std::vector<double>& point) {
+  ExpectedEquilibrium found;
+  found.text = point_text(system, point);
+  found.energy = system.structure().conservative() ? system.conserved(0, point) * system.scales().energy()
+                                                   : std::numeric_limits<double>::quiet_NaN();
+  try {
+    const starts::LinearModes modes = starts::linear_modes(system, point);
+    for (const starts::Oscillation& oscillation : modes.oscillations)
+      found.periods.insert(found.periods.end(), static_cast<std::size_t>(oscillation.multiplicity()),
+                           oscillation.period * system.scales().time);
+    found.stability = starts::to_text(modes.stability);
+  } catch (const core::NumericalError&) {  // the survey's sweep says more
+    found.stability = starts::to_text(starts::LinearStability::undecided);
+  }
+  return found;
 }
 
 }  // namespace
@@ -230,6 +253,10 @@ ExpectedStarts expected_starts(const scene::Scene& scene, const systems::System&
   ExpectedStarts expected;
   const Starts starts = starts_of(scene, system);
   if (has_equilibrium_families(system)) expected.equilibria = starts.equilibria.size();
+  if (!system.structure().driven)
+    for (const std::vector<double>& point : starts.equilibria)
+      expected.resting.push_back(expected_equilibrium(system, point));
+  expected.undeclared = undeclared(system, starts.equilibria, starts.states);
   for (const SweepWork& work : starts.given) {
     const GivenStart& given = work.given.front();
     if (given.is_return()) ++expected.near_returns;
@@ -269,13 +296,15 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
                            Summary& summary) {
   BaseFamilies families;
   std::vector<queue::Task>& tasks = families.tasks;
-  remark_grid(scene, system, summary);
+  const std::vector<std::vector<double>> equilibria_of_grid = remark_grid(scene, system, summary);
+  std::vector<std::vector<double>> states;
   std::vector<SweepOutcome> all;
   std::vector<FoundStart> given;
   int equilibria = 0;
   for (const auto& [key, ended] : sweeps) {
     SweepWork work = unpack_sweep_work(ended.first.payload);
     equilibria += work.given.empty() ? 1 : 0;
+    if (!work.given.empty() && !work.given.front().is_return()) states.push_back(work.point);
     if (ended.second.failed) continue;  // gather_failed_sweeps
     SweepOutcome outcome = unpack_sweep_outcome(ended.second.payload);
     if (work.given.empty())
@@ -283,7 +312,8 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
     else
       given.push_back({std::move(work.given.front()), std::move(outcome)});
   }
-  remark_undeclared(system, all, summary);
+  if (scene.recurrences) states.push_back(scene.recurrences->state);
+  remark_undeclared(system, undeclared(system, equilibria_of_grid, states), summary);
   for (const SweepOutcome& found : all) {
     check_names(scene, system, found);
     const bool found_nothing = found.modes.empty() && found.rejected.empty() && found.without_family.empty();
@@ -330,7 +360,16 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
 }
 
 void require_families(const systems::System& system, const SweepsEnded& sweeps, Summary& summary) {
-  if (!summary.families.empty() || summary.stopped_early) return;
+  if (summary.stopped_early) return;
+  const bool followed_none =
+      std::all_of(summary.families.begin(), summary.families.end(),
+                  [](const FamilySummary& family) { return family.orbits == 0 && !family.failed; });
+  if (!summary.families.empty() && followed_none)
+    summary.remarks.push_back(
+        "no orbit was stored: every family begins beyond the scene's limits (\"ended by\" says which); give wider "
+        "ones, "
+        "and go on with --resume");
+  if (!summary.families.empty()) return;
   bool left_out = false;
   for (const auto& [key, ended] : sweeps)
     left_out = left_out || (!ended.second.failed && !unpack_sweep_outcome(ended.second.payload).left_out.empty());

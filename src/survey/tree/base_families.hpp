@@ -33,7 +33,8 @@ struct BaseFamilies {
 [[nodiscard]] BaseFamilies base_families(const scene::Scene& scene, const systems::System& system,
                                          const SweepsEnded& sweeps, Summary& summary);
 
-/// A survey that came to its end without any family has failed: says so, and what to do.
+/// A survey that came to its end without any family has failed: says so, and what to do. One whose families all begin
+/// beyond its limits has not, as wider limits go on from there, and is told so.
 void require_families(const systems::System& system, const SweepsEnded& sweeps, Summary& summary);
 
 /// An equilibrium whose sweep failed is a family without orbits, so that the archive says so.
