@@ -140,9 +140,8 @@ void require_scene_size(std::size_t bytes, const std::string& place) {
 }
 
 void require_text(const std::string& text, const std::string& place, bool lines) {
-  require_scene_size(text.size(), place);
   const std::size_t at = core::first_untextual(text);
-  if (at == std::string::npos) return;
+  if (at == std::string::npos) return require_scene_size(text.size(), place);
   refuse(place, mark_at(text, at), lines,
          fmt::format("expected a scene, text in UTF-8, got the byte 0x{:02x}; give the scene, not an archive or a "
                      "program, and save it as UTF-8",

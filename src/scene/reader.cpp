@@ -1,6 +1,7 @@
 #include "reader.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -39,6 +40,9 @@ std::string advice_for(const std::string& key, const std::vector<std::string>& k
   const std::size_t colon = key.find(':');
   if (colon != std::string::npos && std::find(known.begin(), known.end(), key.substr(0, colon)) != known.end())
     return fmt::format("write a space after the colon of `{}:`", key.substr(0, colon));
+  // YAML takes `{m1: 1,5}` for two entries, `m1: 1` and the key `5`.
+  if (!key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+    return "a decimal comma? Write a decimal point, as in 1.5";
   const std::string near = nearest(key, known);
   return near.empty() ? "remove it" : fmt::format("did you mean `{}`?", near);
 }
@@ -139,8 +143,7 @@ double Field::plain_length(std::string_view also) const {
     fail(fmt::format("{}a number > 0 in the units of the coordinate with the largest scale, for the system has no "
                      "angles",
                      also),
-         got(),
-         "for example 0.01");
+         got(), "for example 0.01");
   }
   return *value;
 }

@@ -61,17 +61,19 @@ std::string emit(const YAML::Node& root) {
   return std::string(emitter.c_str()) + "\n";
 }
 
-// No more than a byte beyond what a scene may have, which parse_document refuses.
+// No more than a byte beyond what a scene may have, which parse_document refuses. What is no text is not too long a
+// scene.
 std::string read_file(const std::filesystem::path& file) {
   if (const std::string got = core::unreadable_input(file); !got.empty())
     throw core::InputError(
         fmt::format("{}: expected a scene file that can be read, got {}; check the path", quoted(file.string()), got));
   std::error_code code;
   std::ifstream stream(file, std::ios::binary);
-  require_scene_size(std::filesystem::file_size(file, code), quoted(file.string()));
   std::string text(longest_scene + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > longest_scene && text.find('\0') == std::string::npos)
+    require_scene_size(std::filesystem::file_size(file, code), quoted(file.string()));
   return text;
 }
 

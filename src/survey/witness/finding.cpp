@@ -93,6 +93,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
       return fmt::format("ends where rounding does not tell orbits from their neighbours: {}", f.detail);
     case FindingKind::undecided_event: return f.detail;
     case FindingKind::undecided_indices:
+      if (!std::isfinite(f.deviation))
+        return "a stability index is not known: crossings are not told from rounding there";
       return fmt::format("a stability index is known to {:.2g} only: crossings are not told from rounding there",
                          f.deviation);
     case FindingKind::failed_certificate:
