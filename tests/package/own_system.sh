@@ -36,6 +36,12 @@ awk -F, 'NR == 1 {for (n = 1; n <= NF; ++n) at[$n] = n; next}
   }
   END {exit rows < 20}' orbits.csv || fail "the masses do not swing alike: $(cut -d, -f1-6 orbits.csv | tail -3)"
 
+# A drive declares its half turn: nothing is missing, and the response turns twice.
+orbweaver check response.yaml >checked.txt
+! grep -q 'not declared' checked.txt || fail "check misses a symmetry: $(grep 'not declared' checked.txt)"
+grep -q 'H: -x, -v, phase + 180 deg' checked.txt || fail "check does not know H: $(grep symmetries checked.txt)"
+(($(orbweaver show out_response crossings --csv | grep -c fold-parameter) == 2)) || fail "the response does not turn twice"
+
 # expect_refusal TEXT COMMAND ...
 expect_refusal() {
   local text=$1 status=0
@@ -85,6 +91,7 @@ rm -r "$bare"
 ((status == 3)) && grep -qF "run the program from where it was built or installed" refused.txt || fail "a bare copy: $(cat refused.txt)"
 echo 'int nothing;' >nothing.cpp
 expect_refusal "has no symbol \`orbweaver_plugin\`" orbweaver build-system nothing.cpp -o nothing.so
+grep -q '^compiling nothing.cpp' refused.txt || fail "build-system does not say what takes so long: $(cat refused.txt)"
 echo 'int nothing' >nothing.cpp
 expect_refusal "does not compile" orbweaver build-system nothing.cpp -o nothing.so
 # The first bytes of the table are its ABI version, its size and two texts; then come sizes of types.
