@@ -99,6 +99,7 @@ TEST(Plot, WhatCannotBeDrawnIsNamed) {
   EXPECT_THAT(error_of({"tree", {"Sideways"}, {}}), HasSubstr("no family `Sideways`"));
   EXPECT_THAT(error_of({"tree", {"Up-Down"}, {}}), HasSubstr("has no orbits to draw"));
   EXPECT_THAT(error_of({"off-branch", {}, {}}), HasSubstr("nothing to draw: no `off_branch_eigenvalue`"));
+  EXPECT_THAT(error_of({"off-branch", {}, {}}), HasSubstr("set `survey.spectrum: all` in the scene"));
   EXPECT_THAT(error_of({"tree", {"In-Phase"}, 1}), HasSubstr("expected no --step for `tree`"));
   EXPECT_THAT(error_of({"orbit", {}, {}}), HasSubstr("expected one --family for `orbit`"));
   EXPECT_THAT(error_of({"spectrum", {"In-Phase"}, 99}), HasSubstr("and no step 99"));

@@ -66,6 +66,30 @@ TEST(ShowStability, IntervalsNameTheTurnsOfThePeriod) {
   EXPECT_EQ(text({1, 2, 2 - 1e-8, 3, 4}, {1, 1, 1, 1, 3}), "stable T 1 .. 3");
 }
 
+// Under a drive of one frequency T is the same all along.
+TEST(ShowStability, WhereThePeriodIsOneNumberTheParameterTells) {
+  Header header = test::sample_header();
+  header.scale_names = {"time", "th1", "th2", "w1", "w2", "energy", "m"};
+  header.scales.assign(header.scale_names.size(), 1.0);
+  Records records = test::sample_records(header);
+  records.crossings.clear();
+  records.families = {records.families[1]};
+  records.families[0].crossing = records.families[0].end_crossing = -1;
+  records.orbits.assign(4, records.orbits[0]);
+  records.sections.clear();
+  for (std::size_t i = 0; i < records.orbits.size(); ++i) {
+    records.orbits[i].family_key = records.families[0].key;
+    records.orbits[i].step = static_cast<int>(i);
+    records.orbits[i].arclength = static_cast<double>(i);
+    records.orbits[i].period = 2.0;
+    records.orbits[i].parameter = 1.0 + 0.5 * static_cast<double>(i);
+    records.orbits[i].stability = {i < 3 ? 1.0 : 3.0};
+    records.orbits[i].stability_error = 1e-9;
+  }
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("one_period"), header, records));
+  EXPECT_EQ(stability_text(atlas, 0), "stable m 1 .. 2");
+}
+
 // Below the least double a single multiplier is not known, but its logarithm is.
 TEST(ShowStability, ASingleMultiplierOutOfRangeIsToldByTheVolume) {
   const Header header = test::sample_header(1, false);

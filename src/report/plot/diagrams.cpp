@@ -179,7 +179,7 @@ Figure energy_period_figure(const archive::Archive& atlas, const PlotRequest& re
 Figure off_branch_figure(const archive::Archive& atlas, const PlotRequest& request) {
   const FamilyCurves curves(atlas, request.families);
   const Abscissa abscissa = abscissa_of(atlas);
-  require_values(atlas, curves, "off_branch_eigenvalue", "the scene's survey.spectrum is off");
+  require_values(atlas, curves, "off_branch_eigenvalue", "set `survey.spectrum: all` in the scene");
   Figure figure{fmt::format("{}: smallest eigenvalue off the family's direction", system_title(atlas)),
                 abscissa.axis,
                 {"off-branch eigenvalue", Scale::logarithmic}};
