@@ -119,7 +119,7 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
                              "-DORBWEAVER_PLUGIN_VERSION=\"" ORBWEAVER_VERSION "\"", "-shared", "-fPIC", "-Wl,-z,lazy",
                              source.string(), "-o", unfinished.path().string()});
   const std::string what = options.model.empty() ? source.string() : "the combination";
-  core::log_info(fmt::format("compiling {} for all scalars: about half a minute", what));
+  core::write_line(stderr, fmt::format("compiling {} for all scalars: about half a minute", what));
   compile(build, what);
   const systems::Plugin& plugin = systems::load_plugin(unfinished.path());
   fs::rename(unfinished.path(), options.output);

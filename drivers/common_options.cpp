@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
+#include "orbweaver/core/terminal.hpp"
 #include "orbweaver/systems/plugins.hpp"
 
 namespace orbweaver::drivers {
@@ -10,6 +12,12 @@ namespace orbweaver::drivers {
 core::LogLevel LogOptions::level() const {
   if (quiet) return core::LogLevel::error;
   return verbose ? core::LogLevel::debug : core::LogLevel::info;
+}
+
+survey::Display display_of(const LogOptions& log, const std::string& style) {
+  if (log.quiet) return survey::Display::none;
+  if (style == "auto") return core::terminal_of(STDERR_FILENO).redraws ? survey::Display::live : survey::Display::lines;
+  return style == "live" ? survey::Display::live : survey::Display::lines;
 }
 
 CLI::Validator named_path() {

@@ -8,6 +8,7 @@
 
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/run/survey.hpp"
 
 namespace orbweaver::drivers {
 
@@ -27,6 +28,9 @@ struct LogOptions {
 
   [[nodiscard]] core::LogLevel level() const;
 };
+
+/// How work under way is shown; `style` as --progress has it.
+[[nodiscard]] survey::Display display_of(const LogOptions& log, const std::string& style = "auto");
 
 /// A check for paths: no empty word, which would be the working folder or no file at all.
 [[nodiscard]] CLI::Validator named_path();

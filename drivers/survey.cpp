@@ -1,11 +1,13 @@
+#include <algorithm>
+#include <cctype>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "command.hpp"
 #include "common_options.hpp"
@@ -16,7 +18,6 @@
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/core/pause.hpp"
 #include "orbweaver/core/petsc/session.hpp"
-#include "orbweaver/core/terminal.hpp"
 #include "orbweaver/report/summary_text.hpp"
 #include "orbweaver/survey/run/expected_work.hpp"
 #include "orbweaver/survey/run/survey.hpp"
@@ -41,26 +42,32 @@ struct SurveyOptions {
   std::string progress = "auto";
 };
 
-survey::Display display_for(const SurveyOptions& options) {
-  if (options.log.quiet) return survey::Display::none;
-  if (options.progress == "auto")
-    return core::terminal_of(STDERR_FILENO).redraws ? survey::Display::live : survey::Display::lines;
-  return options.progress == "live" ? survey::Display::live : survey::Display::lines;
+/// As a shell wants it, which would take brackets and blanks for its own.
+std::string shell_word(const std::string& text) {
+  const bool is_plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_./=:+,-@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain && !text.empty()) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
 }
 
 std::string how_to_go_on(const SurveyOptions& options) {
   const std::string signal = stop_signal();
+  std::string settings;
+  for (const std::string& setting : options.scene.overrides) settings += " --set " + shell_word(setting);
   return fmt::format(
       "stopped{}; the survey goes on, on any number of ranks, with\n  orbweaver survey {}{} -o {} --resume\n",
-      signal.empty() ? "" : " by " + signal, options.scene.file.string(),
-      options.scene.overrides.empty() ? "" : " (with the same --set)", options.directory.string());
+      signal.empty() ? "" : " by " + signal, shell_word(options.scene.file.string()), settings,
+      shell_word(options.directory.string()));
 }
 
 int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
   scene::Scene scene;
   std::shared_ptr<const systems::System> system;
   survey::DirectoryStatus status = survey::DirectoryStatus::none;
-  survey::RunOptions run_options{display_for(options), options.resume};
+  survey::RunOptions run_options{display_of(options.log, options.progress), options.resume};
   agree(comm, [&] {
     scene = options.scene.load();
     system = scene::bound_system(scene.system);

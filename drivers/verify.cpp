@@ -102,7 +102,8 @@ int verify_on(const core::Communicator& comm, const VerifyOptions& options) {
   if (proves)
     return static_cast<int>(core::agreed(comm.get(), is_proven) ? core::ExitStatus::done
                                                                 : core::ExitStatus::goal_missed);
-  const survey::Verification found = alike_on_all_ranks(comm, [&] { return survey::verify(comm, options.atlas); });
+  const survey::Verification found =
+      alike_on_all_ranks(comm, [&] { return survey::verify(comm, options.atlas, display_of(options.log)); });
   agree(comm, [&] {
     if (comm.is_root()) print_result(report::to_text(found, options.atlas, options.margins));
   });

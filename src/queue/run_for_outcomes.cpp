@@ -16,9 +16,8 @@ class NothingToFlush final : public Flusher {
 }  // namespace
 
 std::optional<std::vector<TaskOutcome>> run_for_outcomes(const core::Communicator& comm, std::vector<Task> tasks,
-                                                         Executor& executor) {
+                                                         Executor& executor, Observer& observer) {
   if (!core::agreed(comm.get(), !tasks.empty())) return std::vector<TaskOutcome>{};
-  Observer observer;
   NothingToFlush flusher;
   Options options;
   options.keep_outcomes = true;
@@ -27,6 +26,12 @@ std::optional<std::vector<TaskOutcome>> run_for_outcomes(const core::Communicato
   RunSummary summary = run(comm, options, std::move(tasks), executor, observer, flusher);
   if (summary.stopped_early) return std::nullopt;
   return std::move(summary.outcomes);
+}
+
+std::optional<std::vector<TaskOutcome>> run_for_outcomes(const core::Communicator& comm, std::vector<Task> tasks,
+                                                         Executor& executor) {
+  Observer nobody;
+  return run_for_outcomes(comm, std::move(tasks), executor, nobody);
 }
 
 }  // namespace orbweaver::queue

@@ -74,5 +74,22 @@ TEST(Display, TheWholeSaysTasksOrbitsRateAndTime) {
   EXPECT_THAT(text_of({}, 160), AllOf(StartsWith("0 of 0 tasks"), Not(HasSubstr("/s"))));
 }
 
+// Of `verify`, whose tasks are all known and make no orbits.
+TEST(Display, TasksAloneHaveNoOrbits) {
+  WholeState whole{.done = 30, .known = 40, .orbits = std::nullopt, .seconds = 9.0, .left = 3.0};
+  EXPECT_EQ(text_of(whole, 160), "30 of 40 tasks, 9 s, about 3 s left");
+  testing::internal::CaptureStderr();
+  {
+    TaskCountDisplay display(Display::live);
+    orbweaver::queue::TaskCounts counts;
+    counts.done = 3;
+    counts.waiting = 5;
+    display.started({"verify 0 000000000000", 0, "verify", {}}, 0);
+    display.tick(counts);
+  }
+  const std::string shown = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(shown, AllOf(HasSubstr("3 of 8 tasks"), HasSubstr(" left"), Not(HasSubstr("orbits"))));
+}
+
 }  // namespace
 }  // namespace display_test

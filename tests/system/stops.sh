@@ -10,6 +10,7 @@ survey whole 2 || fail "the undisturbed run failed"
 expect_stopped() {
   [ "$1" = 4 ] || fail "$2: exit status $1 instead of 4"
   grep -q "the survey goes on, on any number of ranks, with" "$folder/log" || fail "$2: no word on how to go on"
+  grep -q -- "--set .* --resume" "$folder/log" || fail "$2: settings are not told"
   [ -e "$folder/stopped/segments/checkpoint" ] || fail "$2: no checkpoint"
 }
 

@@ -86,8 +86,8 @@ std::string line_of(const FamilyState& f, const std::string& level, std::size_t 
 std::string text_of(const WholeState& whole, std::size_t width) {
   std::vector<std::string> parts{fmt::format("{} of {} tasks", whole.done, whole.known)};
   if (whole.failed > 0) parts.push_back(fmt::format("{} failed", whole.failed));
-  parts.push_back(fmt::format("{} orbits", whole.orbits));
-  if (whole.orbits > 0) parts.push_back(fmt::format("{:.1f}/s", whole.orbits_a_second));
+  if (whole.orbits) parts.push_back(fmt::format("{} orbits", *whole.orbits));
+  if (whole.orbits && *whole.orbits > 0) parts.push_back(fmt::format("{:.1f}/s", whole.orbits_a_second));
   parts.push_back(duration_text(whole.seconds));
   if (whole.left)
     parts.push_back(fmt::format("{} {}", whole.at_most ? "stops within" : "about", duration_text(*whole.left)) +
@@ -105,8 +105,13 @@ std::string line_of(const WholeState& whole, std::size_t width, bool unicode) {
   return bar_text(part, std::min(widest_bar, width - text.size() - frame), unicode) + text;
 }
 
+void ProgressDisplay::show_tasks_only() {
+  _all_known = true;
+  _shows_orbits = false;
+}
+
 void ProgressDisplay::started(const queue::Task& task, int) {
-  _sweeping = kind_of(task) == TaskKind::sweep;
+  _all_known = kind_of(task) == TaskKind::sweep;
   if (kind_of(task) != TaskKind::branch) return;
   FamilyState& family = _families[task.key];
   family.name = told_branch(task).name;
@@ -175,11 +180,13 @@ WholeState ProgressDisplay::whole() {
   whole.done = _counts.done + _counts.failed;
   whole.known = whole.done + _counts.waiting + _counts.running + _counts.aside;
   whole.failed = _counts.failed;
-  whole.orbits = _orbits;
+  if (_shows_orbits)
+    whole.orbits = _orbits;
+  else
+    whole.orbits.reset();
   whole.orbits_a_second = span > 0.0 ? static_cast<double>(_orbits - _lately.front().second) / span : 0.0;
   whole.seconds = std::chrono::duration<double>(now - _began).count();
-  // Only sweeps bring no tasks of which nobody knows yet.
-  if (_sweeping && whole.done > 0)
+  if (_all_known && whole.done > 0)
     whole.left = whole.seconds * static_cast<double>(whole.known - whole.done) / static_cast<double>(whole.done);
   if (!whole.left && std::isfinite(_allowed)) {
     whole.left = std::max(0.0, _allowed - whole.seconds);

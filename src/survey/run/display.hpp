@@ -37,7 +37,7 @@ struct WholeState {
   std::size_t done = 0;   ///< tasks, those that failed among them
   std::size_t known = 0;  ///< with those that wait or run
   std::size_t failed = 0;
-  long orbits = 0;  ///< of this run
+  std::optional<long> orbits = 0;  ///< of this run; none where the tasks follow no families
   double orbits_a_second = 0.0;
   double seconds = 0.0;
   std::optional<double> left{};  ///< seconds; only where that can be said
@@ -62,6 +62,9 @@ class ProgressDisplay : public queue::Observer {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
+  /// The tasks follow no families and are all known: how many are done is all there is to show, by `tick` alone.
+  void show_tasks_only();
+
   void started(const queue::Task& task, int rank) override;
   void progress(const queue::Task& task, const queue::Progress& progress, int rank) override;
   void finished(const queue::Task& task, const queue::TaskOutcome& outcome) override;
@@ -85,12 +88,23 @@ class ProgressDisplay : public queue::Observer {
   double _allowed;
   std::map<std::string, FamilyState> _families;
   queue::TaskCounts _counts;
-  bool _sweeping = false;
+  bool _all_known = false;  ///< no task brings others
+  bool _shows_orbits = true;
   long _orbits = 0;
   std::deque<std::pair<Clock::time_point, long>> _lately;  // orbits at times
   int _drawn = 0;
   Clock::time_point _began = Clock::now();
   Clock::time_point _last = _began;
+};
+
+/// Shows on stderr how many of the tasks are done that compute an archive again.
+class TaskCountDisplay final : public queue::Observer {
+ public:
+  explicit TaskCountDisplay(Display style) : _display(style) { _display.show_tasks_only(); }
+  void tick(const queue::TaskCounts& counts) override { _display.tick(counts); }
+
+ private:
+  ProgressDisplay _display;
 };
 
 }  // namespace orbweaver::survey

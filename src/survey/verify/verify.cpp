@@ -10,6 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/queue/run_for_outcomes.hpp"
+#include "run/display.hpp"
 #include "verify/table_rules.hpp"
 #include "verify/verified_atlas.hpp"
 #include "verify/verify_task.hpp"
@@ -33,8 +34,9 @@ void add_blocks(What what, std::int64_t first, std::int64_t end, std::int64_t mo
 
 /// Does the tasks, given on rank 0, and adds there what they found.
 void run_tasks(const core::Communicator& comm, const std::vector<queue::Task>& tasks, VerifyExecutor& executor,
-               Findings& findings) {
-  const auto outcomes = queue::run_for_outcomes(comm, tasks, executor);
+               Display display, Findings& findings) {
+  TaskCountDisplay shown(display);
+  const auto outcomes = queue::run_for_outcomes(comm, tasks, executor, shown);
   if (!outcomes) throw core::EnvironmentError("verify: stopped before all was computed");
   core::on_root(comm.get(), [&] {
     // Outcomes come by key, as tasks have been made but for their kinds.
@@ -61,7 +63,7 @@ std::vector<queue::Task> tasks_of(const VerifiedAtlas& atlas) {
 
 }  // namespace
 
-Verification verify(const core::Communicator& comm, const std::filesystem::path& atlas) {
+Verification verify(const core::Communicator& comm, const std::filesystem::path& atlas, Display display) {
   const auto begin = std::chrono::steady_clock::now();
   Verification out;
   out.ranks = comm.size();
@@ -83,7 +85,7 @@ Verification verify(const core::Communicator& comm, const std::filesystem::path&
           {row.table, row.table.empty() ? -1 : static_cast<std::int64_t>(row.row), "", row.text});
     if (out.has_checksums) add_blocks(What::checksums, 0, out.orbits, checksums_a_task, tasks);
   });
-  run_tasks(comm, tasks, executor, findings);
+  run_tasks(comm, tasks, executor, display, findings);
   out.is_computed = core::agreed(comm.get(), findings.objections.empty());
   if (out.is_computed) {
     tasks.clear();
@@ -92,7 +94,7 @@ Verification verify(const core::Communicator& comm, const std::filesystem::path&
       check_tables(opened, findings);
       tasks = tasks_of(opened);
     });
-    run_tasks(comm, tasks, executor, findings);
+    run_tasks(comm, tasks, executor, display, findings);
   }
   const auto place = [](const Objection& o) { return std::tie(o.table, o.row, o.column, o.text); };
   std::stable_sort(findings.objections.begin(), findings.objections.end(),

@@ -7,6 +7,7 @@
 
 #include "orbweaver/core/mpi/communicator.hpp"
 #include "orbweaver/core/serialization.hpp"
+#include "orbweaver/survey/run/survey.hpp"
 
 namespace orbweaver::survey {
 
@@ -61,6 +62,7 @@ struct Verification {
 /// Computes everything again from the stored modes alone and compares it with what the archive says
 /// (docs/accuracy.md); first all checksums. Collective over `comm`: rows are tasks of the queue, the result does not
 /// depend on the number of ranks. Throws InputError for what is no archive, and for one whose system is not known here.
-[[nodiscard]] Verification verify(const core::Communicator& comm, const std::filesystem::path& atlas);
+[[nodiscard]] Verification verify(const core::Communicator& comm, const std::filesystem::path& atlas,
+                                  Display display = Display::none);
 
 }  // namespace orbweaver::survey
