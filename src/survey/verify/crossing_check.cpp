@@ -57,9 +57,6 @@ constexpr double located = 1e-9;
 /// Between two computations of the largest singular value of a kernel, and what of it is rounding.
 constexpr double kernel_factor = 100.0;
 constexpr double kernel_rounding = 1e-8;
-/// Of the way from the orbits beside a crossing to it, orbits on that way: each so much nearer, up to the last.
-constexpr double nearer = 0.5;
-constexpr double nearest = 1e-6;
 /// A slope that vanishes, relative to those at the orbits beside it.
 constexpr double vanishing_slope = 1e-5;
 
@@ -203,11 +200,9 @@ class CrossingCheck {
     const Units units(_system);
     const double level_a = continuation::level_of(_system, a.loop);
     const double level_b = continuation::level_of(_system, b.loop);
+    const double level_size = std::max(std::abs(level_a), std::abs(level_b));
     const double in_period = std::abs(b.loop.period / a.loop.period - 1.0);
-    const double in_level = std::abs(level_b - level_a) / std::max(std::abs(level_a), std::abs(level_b));
-    // Not by the one that turns; false where there is no level.
-    const bool turns_in_level = _kind == CrossingKind::fold_energy || _kind == CrossingKind::fold_parameter;
-    const bool by_level = _kind == CrossingKind::fold_period || (!turns_in_level && in_level > in_period);
+    const double in_level = std::abs(level_b - level_a) / level_size;
     // A drive ties the period to its frequency: both turn there, or the period does not change at all. Where it changes
     // more than the parameter, as along a canard, it says better where the fold is than a slope that is small all over.
     if (both_turn || (_kind == CrossingKind::fold_parameter && !(in_period > in_level)))
@@ -215,27 +210,22 @@ class CrossingCheck {
         const auto point = curve.at(position, true);
         return point ? slope(*point) : std::numeric_limits<double>::quiet_NaN();
       });
-    const auto where = [&](bool is_level) {
-      const double wanted = is_level ? real(level()) / units.level() : real("period") / units.time;
-      return root_near(a, b, told, [&](double position) {
-        const auto point = curve.at(position);
-        if (!point) return std::numeric_limits<double>::quiet_NaN();
-        return (is_level ? continuation::level_of(_system, point->loop) : point->loop.period) - wanted;
-      });
-    };
-    if (const std::optional<double> place = where(by_level)) return place;
-    if (archive::is_fold(_kind)) return std::nullopt;
-    come_near(curve, a, b, told);
-    const std::optional<double> place = where(by_level);
-    return place || std::isnan(level_a) ? place : where(!by_level);  // beside a fold of the one the other tells
-  }
-
-  /// Orbits nearer and nearer to a place, from both sides: where a family turns sharply, what those around predict of
-  /// it leads to another one.
-  static void come_near(continuation::FamilyCurve& curve, const continuation::FamilyCurve::Known& a,
-                        const continuation::FamilyCurve::Known& b, double told) {
-    for (double share = nearer; share > nearest; share *= nearer)
-      for (const double end : {a.position, b.position}) (void)curve.at(told + share * (end - told));
+    // Not by the one that turns; false where there is no level.
+    bool by_level = _kind == CrossingKind::fold_period;
+    if (!archive::is_fold(_kind)) {
+      by_level = in_level > in_period;
+      // Beside a fold of the one the other tells.
+      if (const auto there = curve.at(told, true))
+        by_level = std::abs(bifurcation::level_slope(_system, *there)) /
+                       std::fmax(level_size, _crossing.level_scale / units.level()) >
+                   std::abs(bifurcation::period_slope(*there)) / there->loop.period;
+    }
+    const double wanted = by_level ? real(level()) / units.level() : real("period") / units.time;
+    return root_near(a, b, told, [&](double position) {
+      const auto point = curve.at(position);
+      if (!point) return std::numeric_limits<double>::quiet_NaN();
+      return (by_level ? continuation::level_of(_system, point->loop) : point->loop.period) - wanted;
+    });
   }
 
   /// The nearest zero to the place `told` between two orbits of a function that may turn between them: near the place
