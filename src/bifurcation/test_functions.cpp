@@ -73,12 +73,13 @@ const Rule& checked_rule(const TestFunction& function, const systems::Structure&
 constexpr double told_to = 1e-4;
 constexpr double near_circle = 3.0;
 
-/// How many of several indices are above the function's place: none passes it unseen while all are real.
+/// How many of several indices, or multipliers, are above the function's place: none passes it unseen while all are
+/// real.
 double indices_above(const TestFunction& function, const systems::Structure& system,
                      const spectrum::Stability& stability) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Bounded> indices = indices_of(system, stability);
-  if (!system.symplectic || indices.size() < 2) return unknown;
+  if (indices.size() < 2) return unknown;
   int above = 0;
   for (const Bounded& factor : checked_rule(function, system).factors(system, function.sector, indices)) {
     // Two that are equal by symmetry are a complex pair to rounding.

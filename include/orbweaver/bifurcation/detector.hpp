@@ -146,6 +146,8 @@ class Detector {
   void take(std::size_t function, const Node& node, const Probe& probe, std::vector<Bracket>& found);
   void count(std::size_t function, const Node& left, const Node& right, const Probe& probe,
              std::vector<Bracket>& found);
+  void part(std::size_t function, const Node& left, const Node& right, int halvings, const Probe& probe,
+            std::vector<Bracket>& found) const;
   void look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
                         std::vector<Bracket>& found);
   void examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
