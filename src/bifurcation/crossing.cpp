@@ -213,6 +213,8 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
       return std::nullopt;
     }
   }
+  if (event.kind == Event::Kind::test_function && has_sector(event.function.kind) && event.function.sector.q == 1)
+    crossing->point.tangent = settled_direction(family, crossing->point, {from, to});
   crossing->width = located->width;
   return crossing;
 }

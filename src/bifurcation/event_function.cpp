@@ -19,6 +19,12 @@ namespace {
 /// finds no orbit if it is asked for exactly that one.
 constexpr double beside_singular[] = {1e-4, 1e-3, 1e-2};
 
+/// How far beside a branch point orbits tell the family's direction, in parts of the interval: near enough that it does
+/// not bend, far enough that rounding does not leave them open. And the cosine of the angle by which they say the same
+/// as the equations. Not measured.
+constexpr double beside_branch_point = 1e-2;
+constexpr double same_direction = 0.999;
+
 /// A value is zero that moves the place by this share of what it may be off, by the function's mean slope.
 constexpr double negligible = 1e-2;
 /// Of its error, what a value must be to tell a slope.
@@ -42,6 +48,28 @@ std::optional<std::array<continuation::CurvePoint, 2>> both_sides(continuation::
       return std::array{*std::move(before), *std::move(behind)};
   }
   return std::nullopt;
+}
+
+loop::Tangent settled_direction(continuation::FamilyCurve& family, const continuation::CurvePoint& point,
+                                const Interval& within) {
+  const double away = beside_branch_point * (within.to - within.from);
+  const double from = std::max(within.from, point.position - away);
+  const double to = std::min(within.to, point.position + away);
+  const auto before = family.at(from);
+  const auto behind = family.at(to);
+  if (!before || !behind || !(before->loop.time_map == behind->loop.time_map) ||
+      !(before->loop.time_map == point.loop.time_map))
+    return point.tangent;
+  const int cutoff = point.loop.cutoff;
+  const loop::Loop a = loop::with_cutoff(before->loop, cutoff);
+  const loop::Loop b = loop::with_cutoff(behind->loop, cutoff);
+  loop::Tangent way = point.tangent;
+  for (std::size_t n = 0; n < way.modes.size(); ++n) way.modes[n] = b.modes[n] - a.modes[n];
+  for (std::size_t n = 0; n < way.scalars.size(); ++n)
+    way.scalars[n] = n == 0 ? b.period - a.period : b.parameters[n - 1] - a.parameters[n - 1];
+  if (!(way.norm() > 0.0)) return point.tangent;
+  way.normalize();
+  return loop::dot(way, point.tangent) > same_direction ? point.tangent : way;
 }
 
 double turning(const systems::System& system, Event::Kind kind, const loop::Loop& loop) {

@@ -22,6 +22,11 @@ struct Interval {
                                                                                 double position, const Interval& within,
                                                                                 bool with_tangent);
 
+/// The family's unit direction at a place by the orbits on both sides of it, where these say another one than
+/// `tangent`; else that. At a branch point the equations leave it open: any part of the other family's may be in it.
+[[nodiscard]] loop::Tangent settled_direction(continuation::FamilyCurve& family, const continuation::CurvePoint& point,
+                                              const Interval& within);
+
 /// What turns at a fold.
 [[nodiscard]] double turning(const systems::System& system, Event::Kind kind, const loop::Loop& loop);
 
