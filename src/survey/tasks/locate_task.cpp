@@ -80,7 +80,8 @@ class Location {
     const auto [from, to] = between_known(_work, any);
     const bifurcation::NotLocated at_first = why;
     bifurcation::Event event = _event;
-    event.from_birth = event.from_birth || from < 0.0;  // the family's first orbit is at 0
+    // The first orbit of a family that is born is at 0.
+    event.from_birth = event.from_birth || (from < 0.0 && !_work.lineage.crossing.empty());
     try {
       crossing = bifurcation::locate(*_system, any, event, from, to, why);
     } catch (const core::InputError&) {  // it does not apply, as to driven orbits that a reversor fixes
@@ -239,6 +240,14 @@ class Location {
       return touching(crossing, kernel, expected);
     _breaks_symmetry = sector.q > 1 || breaks_symmetry(kernel, isotropy);
     if (!starts) return;
+    if (moves() && !_system->structure().symplectic && kernel.dimension() > 1) {
+      _outcome.undecided = true;
+      _outcome.remark = fmt::format(
+          "{} directions are flat: along which of their combinations families leave is looked "
+          "for in Hamiltonian systems only",
+          kernel.dimension());
+      return;
+    }
     report();
     int number = 0;
     bifurcation::DirectionOptions options;
@@ -442,7 +451,8 @@ int expected_dimension(const systems::Structure& system, const spectrum::Stabili
     const double bound = system.symplectic ? bifurcation::error_margin * stability.fundamental_error[n] : 0.0;
     if (away < std::max(in_sector, bound)) ++pairs;
   }
-  return std::max(1, pairs) * (sector.q <= 2 && !touches ? 1 : 2);
+  // A pair that touches 1 or -1 has both of its multipliers there; without pairs each is one direction.
+  return std::max(1, pairs) * (sector.q <= 2 && !(touches && system.symplectic) ? 1 : 2);
 }
 
 queue::TaskOutcome locate(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,

@@ -21,6 +21,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
     case FindingKind::shared_point:
       return fmt::format("passes through the {} of {}, where neither says so", names.crossing, names.other_family);
     case FindingKind::missing_directions:
+      if (f.severity == Severity::undecided && f.other_number == 0)
+        return fmt::format("{}: which families leave there is not decided", names.crossing);
       if (f.severity == Severity::undecided && f.number > 0 && f.number >= f.other_number)
         return fmt::format("{}: directions found: {}; whether there are others is not decided", names.crossing,
                            f.number);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "orbweaver/continuation/branch.hpp"
 #include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/continuation/way_from_start.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
@@ -28,11 +29,14 @@ constexpr double open_beside_birth = 0.1;
 /// and may have come back to it at the first orbit.
 constexpr double nearest_for_indices = 1.0 / 64.0;
 
+bool is_zero(const bifurcation::Reading& reading) { return !std::isnan(reading.value) && reading.sign() == 0; }
+
 }  // namespace
 
 void BranchEnds::look_before_first(const std::optional<Arrival>& arrival) {
   detect_from_birth(arrival);
   folds_at_start();
+  zeros_at_start();
 }
 
 /// The first orbit may lie so far out that an index has passed the values of other sectors on the way from the crossing
@@ -149,6 +153,44 @@ void BranchEnds::folds_at_start() {
   const auto first = _followed.curve.at(known[0].position, true);
   if (!first || first->tangent.empty()) return;
   _events.add_folds(folds_on(*_followed.system, _followed.start.isotropy, {known[1], {*first}, std::nullopt}), known);
+}
+
+/// The same of test functions that are zero at the first orbit, to rounding: neither side sees their signs change. One
+/// of the two looks, at the orbit that the other side steps to first.
+void BranchEnds::zeros_at_start() {
+  if (!_followed.work.base_is_orbit || _followed.work.lineage.side < 0 || _followed.functions.empty() ||
+      _followed.curve.known().empty())
+    return;
+  const continuation::FamilyCurve::Known& first = _followed.curve.known().front();
+  const auto point_at = [&](double position, const loop::Loop& loop) {
+    return _followed.test_point(position, _followed.asked_stability(loop));
+  };
+  const bifurcation::TestPoint at_first = point_at(first.position, first.loop);
+  if (std::none_of(at_first.readings.begin(), at_first.readings.end(), is_zero)) return;
+  continuation::Start backwards = _followed.start;
+  for (double& scalar : backwards.direction.scalars) scalar = -scalar;
+  continuation::Branch other(_followed.system, backwards, branch_options(_followed.scene, _followed.team));
+  const bool has_begun = other.advance().has_value();
+  const std::optional<continuation::Orbit> before = has_begun ? other.advance() : std::nullopt;
+  if (!before || _followed.curve.known().size() < 2) return _events.add_untold_start();
+  std::vector<continuation::FamilyCurve::Known> known{
+      {first.position - continuation::arclength_between(before->loop, first.loop), before->loop,
+       first.arclength - continuation::arclength_in_units(*_followed.system, before->loop, first.loop)}};
+  known.insert(known.end(), _followed.curve.known().begin(), _followed.curve.known().end());
+  continuation::FamilyCurve curve(_followed.system, _followed.start.isotropy,
+                                  branch_options(_followed.scene, _followed.team));
+  for (const continuation::FamilyCurve::Known& one : known) curve.add(one);
+  const auto probe = [&](double position) -> std::optional<bifurcation::TestPoint> {
+    const auto point = curve.at(position);
+    return point ? std::optional(point_at(position, point->loop)) : std::nullopt;
+  };
+  bifurcation::Detector detector;
+  std::vector<bifurcation::Bracket> found;
+  for (std::size_t n = 0; n < 3 && n < known.size(); ++n)
+    for (const bifurcation::Bracket& bracket :
+         detector.advance(n == 1 ? at_first : point_at(known[n].position, known[n].loop), probe))
+      if (is_zero(at_first.readings[bracket.function])) found.push_back(bracket);
+  _events.add_zeros_at_start(found, known);
 }
 
 std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optional<Arrival>& arrival) {

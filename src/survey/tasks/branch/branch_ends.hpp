@@ -36,6 +36,7 @@ class BranchEnds {
   void add_beyond_zeros(continuation::FamilyCurve& curve, double birth,
                         std::vector<continuation::CurvePoint>& places) const;
   void folds_at_start();
+  void zeros_at_start();
   void add_behind(std::vector<continuation::CurvePoint>& places);
   void add_orbits(const std::vector<continuation::CurvePoint>& places, double to,
                   std::vector<continuation::Orbit>& orbits) const;

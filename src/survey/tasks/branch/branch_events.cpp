@@ -122,6 +122,22 @@ void BranchEvents::add_zeros_from_birth(const std::vector<bifurcation::Bracket>&
   }
 }
 
+void BranchEvents::add_zeros_at_start(const std::vector<bifurcation::Bracket>& brackets,
+                                      const std::vector<continuation::FamilyCurve::Known>& known) {
+  for (const bifurcation::Bracket& b : brackets)
+    add_event({.function = _followed.functions[b.function],
+               .tangency = b.tangency,
+               .passed = b.passed,
+               .is_double = b.is_double},
+              b.from, b.to, known);
+}
+
+void BranchEvents::add_untold_start() {
+  _followed.outcome.unlocated.emplace_back(
+      "at its first orbit a multiplier passes a root of unity, or comes to it, and no orbit converges on the other "
+      "side");
+}
+
 void BranchEvents::detect_meetings(const bifurcation::StabilityAt& from, const bifurcation::StabilityAt& to) {
   const auto between = [this](double position) { return stability_between(position); };
   for (const bifurcation::StabilityAt& met : bifurcation::meetings_between(from, to, between))

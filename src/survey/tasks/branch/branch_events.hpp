@@ -54,6 +54,11 @@ class BranchEvents {
   /// to zero at the birth like a power of the distance, which is no event.
   void add_zeros_from_birth(const std::vector<bifurcation::Bracket>& brackets,
                             const std::vector<continuation::FamilyCurve::Known>& known);
+  /// Zeros at an orbit from which both sides of a family begin; `known`: of both.
+  void add_zeros_at_start(const std::vector<bifurcation::Bracket>& brackets,
+                          const std::vector<continuation::FamilyCurve::Known>& known);
+  /// A function is zero there to rounding, and no orbit on the other side says whether it passes.
+  void add_untold_start();
   /// `way`: from this known orbit to the next.
   void add_paired_folds(std::size_t way);
   void add_folds(const std::vector<bifurcation::Fold>& folds,

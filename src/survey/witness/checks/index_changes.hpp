@@ -25,8 +25,12 @@ class IndexChanges final : public Check {
     std::vector<Finding> found;
     if (archive::stability_width(evidence.tree.atlas.header()) == 0) return found;
     for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
-      for (const auto& [first, count] : sides_of(evidence, evidence.tree.families[row]))
-        judge(evidence, static_cast<int>(row), first, count, found);
+      const TreeFamily& family = evidence.tree.families[row];
+      Signs last;
+      for (const auto& [first, count] : sides_of(evidence, family)) {
+        if (family.crossing >= 0) last.clear();  // its birth lies between the sides; else an orbit that is given
+        judge(evidence, static_cast<int>(row), first, count, last, found);
+      }
       judge_birth(evidence, static_cast<int>(row), found);
     }
     return found;
@@ -38,6 +42,8 @@ class IndexChanges final : public Check {
     int sign;
   };
 
+  using Signs = std::vector<std::optional<Signed>>;  // of each function, the last that rounding tells
+
   // Ranges of a family's orbits: those before the crossing where it was born, and those behind it.
   static std::vector<std::pair<std::size_t, std::size_t>> sides_of(const Evidence& evidence, const TreeFamily& family) {
     const auto& steps = evidence.tree.atlas.orbits().integers("step");
@@ -46,14 +52,14 @@ class IndexChanges final : public Check {
     return {{0, before}, {before, family.orbits() - before}};
   }
 
-  static void judge(const Evidence& evidence, int row, std::size_t first, std::size_t count,
+  static void judge(const Evidence& evidence, int row, std::size_t first, std::size_t count, Signs& last,
                     std::vector<Finding>& found) {
     if (count == 0) return;
     const TreeFamily& family = evidence.family(row);
     const systems::Structure& structure = evidence.system->structure();
     const int order = fundamental_order_of(evidence, family);
     const auto functions = bifurcation::test_functions(structure, order, evidence.scene.survey.subharmonics);
-    std::vector<std::optional<Signed>> last(functions.size());
+    last.resize(functions.size());
     const Side side = side_of(evidence, family, first, count);
     if (const std::optional<Finding> undecided = undecided_at(evidence, row, first, count, order))
       found.push_back(*undecided);
