@@ -22,6 +22,7 @@
 #include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/numerics/quad.hpp"
 #include "orbweaver/numerics/random.hpp"
+#include "orbweaver/spectrum/log_volume.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "rotations.hpp"
 #include "transverse_flow.hpp"
@@ -336,21 +337,28 @@ Integrated integrated(const systems::System& system, const loop::Loop& loop, con
   }
 }
 
-}  // namespace
+/// A single multiplier is all that volumes change by. Where the map leaves its bound larger than this, relative to 1 +
+/// |mu|, and the logarithm of the volume is below this, which no error of the orbit makes 0, the volume tells it.
+constexpr double told_by_map = 1e-6;
+constexpr double surely_small = -30.0;
 
-Stability floquet(const systems::System& family, const loop::Loop& loop, const loop::Isotropy& isotropy,
-                  const FloquetOptions& options) {
-  const core::LogStage stage(core::Stage::spectrum);
-  const core::LogEvent event(core::Event::multipliers);
-  loop::validate(loop);
-  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
-  const systems::System& system = *here;
-  core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
-  core::require(moves(loop), "Floquet multipliers need an orbit that moves; this loop is constant");
+bool is_told_by_volume(const systems::Structure& system, int dimension, const FundamentalGroup& group) {
+  return !system.symplectic && !system.conservative() && dimension == 2 && group.order == 1;
+}
+
+/// False where the multiplier is not that small.
+bool tell_by_volume(const systems::System& system, const loop::Loop& loop, Stability& stability) {
+  const double logarithm = log_volume(system, loop);
+  if (!(logarithm < surely_small)) return false;
+  const double multiplier = std::exp(logarithm);  // 0 where it is below double precision's range
+  stability.full = stability.fundamental = {multiplier};
+  stability.full_error = stability.fundamental_error = {multiplier};
+  return true;
+}
+
+Stability by_map(const systems::System& system, const loop::Loop& loop, const FundamentalGroup& group,
+                 const FloquetOptions& options) {
   const systems::Structure& structure = system.structure();
-  core::require(structure.conserved.size() <= 1, "Floquet multipliers: those of one conserved quantity are taken out");
-  const FundamentalGroup group = fundamental_group(system, loop, isotropy);
-  if (loop.dimension == (structure.conservative() ? 2 : 1)) return without_errors({}, group.order);
   core::Team* const team = core::worth_dividing(options.team, loop.dimension);
   const Integrated result = integrated(system, loop, group, options, team);
   const auto& [segments, chain, flow, indices, trace, known] = result;
@@ -374,6 +382,34 @@ Stability floquet(const systems::System& family, const loop::Loop& loop, const l
     stability.full_error.push_back(0.0);
     stability.fundamental.emplace_back(1.0);
     stability.fundamental_error.push_back(0.0);
+  }
+  return stability;
+}
+
+}  // namespace
+
+Stability floquet(const systems::System& family, const loop::Loop& loop, const loop::Isotropy& isotropy,
+                  const FloquetOptions& options) {
+  const core::LogStage stage(core::Stage::spectrum);
+  const core::LogEvent event(core::Event::multipliers);
+  loop::validate(loop);
+  const std::shared_ptr<const systems::System> here = loop::system_at(family, loop);
+  const systems::System& system = *here;
+  core::require(loop.dimension == system.dimension(), "Floquet multipliers: the loop is not of the system's dimension");
+  core::require(moves(loop), "Floquet multipliers need an orbit that moves; this loop is constant");
+  const systems::Structure& structure = system.structure();
+  core::require(structure.conserved.size() <= 1, "Floquet multipliers: those of one conserved quantity are taken out");
+  const FundamentalGroup group = fundamental_group(system, loop, isotropy);
+  if (loop.dimension == (structure.conservative() ? 2 : 1)) return without_errors({}, group.order);
+  if (!is_told_by_volume(structure, loop.dimension, group)) return by_map(system, loop, group, options);
+  Stability stability = without_errors({{0.0}, {0.0}}, group.order);
+  try {
+    stability = by_map(system, loop, group, options);
+    const double error = stability.fundamental_error.front();
+    if (!(error <= told_by_map * (1.0 + std::abs(stability.fundamental.front()))))
+      (void)tell_by_volume(system, loop, stability);
+  } catch (const core::NotFiniteError&) {
+    if (!tell_by_volume(system, loop, stability)) throw;
   }
   return stability;
 }

@@ -43,6 +43,9 @@ constexpr int bisections = 20;
 /// say: a weak term that depends on it alone (a magnetic field's on the momenta) would set the scale of all. Not
 /// measured.
 constexpr double late_departure = 3.0;
+/// Of the mean rate: a component whose linear field is slower, as at a branch point, where it vanishes, departs from
+/// this. Not measured.
+constexpr double least_rate = 1e-4;
 /// Grid points at which scales for the search of equilibria are taken, spread over the grid.
 constexpr std::size_t most_grid_points = 64;
 
@@ -84,6 +87,7 @@ class LocalScales {
       for (Index l = 0; l < d; ++l) weights(i, l) *= std::exp2(2.0 * (_log(i) - _log(l)));
     for (const int angle : _system.structure().angles) _log(angle) = 0.0;
     balance(weights, true);
+    _least_rate = least_rate * rate;
     find_amplitudes(without_rounding(in_scales(*jacobian)), rate, out.coordinates);
     return out;
   }
@@ -270,7 +274,7 @@ class LocalScales {
       const MatrixXd linear = balanced(members, members);
       if (block.norm() < linear.norm() / std::sqrt(static_cast<double>(members.size()))) continue;
       const auto norm = [](const MatrixXd& matrix) { return Eigen::JacobiSVD<MatrixXd>(matrix).singularValues()(0); };
-      if (norm(block) >= norm(linear) && norm(block) > 0.0) return true;
+      if (norm(block) >= std::max(norm(linear), _least_rate)) return true;
     }
     return false;
   }
@@ -279,6 +283,7 @@ class LocalScales {
   VectorXd _point;
   std::vector<std::size_t> _first;
   VectorXd _log;
+  double _least_rate = 0.0;
   bool _invertible = false;
 };
 
