@@ -46,7 +46,7 @@ double boundary(const archive::Archive& atlas, const Told& by, std::size_t famil
 /// The turns that an interval names, at most; with more of them it is said how many there are.
 constexpr std::size_t most_turns = 3;
 
-/// The value at which T, or the parameter, turns at or next to an orbit: that of the fold located there if there is one.
+/// The value at which T, or the parameter, turns at or next to an orbit: that of the fold located there, if any.
 double turn_near(const archive::Archive& atlas, const Told& by, std::size_t family, std::size_t orbit) {
   const auto& arclengths = atlas.orbits().reals("arclength");
   const archive::Table& crossings = atlas.crossings();

@@ -68,10 +68,10 @@ struct EquilibriumCurveOptions {
 /// value, to both sides: Keller's pseudo-arclength continuation (doi:10.1016/B978-0-12-587350-4.50017-3). Hopf points
 /// are zeros of the product of the sums of two eigenvalues (the determinant of the bialternate product: Kuznetsov,
 /// Elements of Applied Bifurcation Theory, section 10.2.2) where the pair that cancels is imaginary. Branch points are
-/// zeros of the determinant of the equation bordered by the curve's direction (Keller, the same); steps are halved until
-/// no part has more than one, or several real eigenvalues pass zero at one place. The other curves are not followed.
-/// Throws MisuseError
-/// for a system without a parameter that moves, NumericalError where no equilibrium is near the start.
+/// zeros of the determinant of the equation bordered by the curve's direction (Keller, the same); steps are halved
+/// until no part has more than one, or several real eigenvalues pass zero at one place. The other curves are not
+/// followed. Throws MisuseError for a system without a parameter that moves, NumericalError where no equilibrium is
+/// near the start.
 [[nodiscard]] EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<const double> start,
                                                   const EquilibriumCurveOptions& options = {});
 
