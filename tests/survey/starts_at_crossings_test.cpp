@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -57,14 +56,6 @@ class Pitchforks {
       f[3] = z[3] * (_p - _b) - z[3] * z[3] * z[3];
       f[4] = z[4] * (_p - _c) - z[4] * z[4] * z[4];
     }
-    template <int, class S>
-    S conserved(const S* z) const {
-      return z[0] * 0.0;
-    }
-    template <class S>
-    S action_density(const S* /*z*/) const {
-      return S(std::numeric_limits<double>::quiet_NaN());
-    }
 
    private:
     P _p, _a, _b, _c;
@@ -103,14 +94,6 @@ class DrivenPitchfork {
       f[0] = z[0] * _p - z[0] * z[0] * z[0] + cos(z[1]) * _force;
       f[1] = z[0] * 0.0 + 1.0;
     }
-    template <int, class S>
-    S conserved(const S* z) const {
-      return z[0] * 0.0;
-    }
-    template <class S>
-    S action_density(const S* /*z*/) const {
-      return S(std::numeric_limits<double>::quiet_NaN());
-    }
 
    private:
     P _p, _force;
@@ -147,14 +130,6 @@ class RestWithPitchforks {
       f[1] = y * (_p - 0.03) - y * y * y;
       f[2] = u * (_p - 0.5) - v * (square + 1.0) - u * square;
       f[3] = v * (_p - 0.5) + u * (square + 1.0) - v * square;
-    }
-    template <int, class S>
-    S conserved(const S* z) const {
-      return z[0] * 0.0;
-    }
-    template <class S>
-    S action_density(const S* /*z*/) const {
-      return S(std::numeric_limits<double>::quiet_NaN());
     }
 
    private:
