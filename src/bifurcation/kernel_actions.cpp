@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "fixed_spaces.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
@@ -221,6 +222,16 @@ int KernelActions::image(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
     if (!_constant && overlap < -least) opposite = true;
   }
   return opposite ? -1 : 0;
+}
+
+int KernelActions::rotations() const {
+  std::vector<Eigen::MatrixXd> distinct;
+  for (const Action& a : _actions)
+    if (a.matrix.determinant() > 0.0 && std::none_of(distinct.begin(), distinct.end(), [&](const Eigen::MatrixXd& m) {
+          return (m - a.matrix).norm() < same_element;
+        }))
+      distinct.push_back(a.matrix);
+  return static_cast<int>(distinct.size());
 }
 
 int KernelActions::images(const Eigen::VectorXd& of, double tolerance) const {

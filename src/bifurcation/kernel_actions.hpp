@@ -8,6 +8,9 @@
 
 namespace orbweaver::bifurcation {
 
+/// Radians: distinct lines of a finite group are much further apart.
+inline constexpr double same_line = 3e-3;
+
 /// A symmetry of the base loop and its orthogonal matrix in the kernel's coordinates.
 struct Action {
   loop::SymmetryElement element;
@@ -32,6 +35,8 @@ class KernelActions {
   [[nodiscard]] int times() const { return _times; }
   /// The denominator that all shifts share.
   [[nodiscard]] int denominator() const { return _denominator; }
+  /// How many of a plane's symmetries are rotations: q of the sector e^{2 pi i j / q}.
+  [[nodiscard]] int rotations() const;
   /// How the coordinates change with a time shift, per radian of s, for constant loops: skew.
   [[nodiscard]] const Eigen::MatrixXd& turn() const { return _turn; }
   /// The kernel vector with these coordinates, and back.

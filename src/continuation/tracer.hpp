@@ -8,6 +8,7 @@
 #include "branch_end.hpp"
 #include "orbweaver/continuation/branch.hpp"
 #include "point_problem.hpp"
+#include "step_limits.hpp"
 #include "stepper.hpp"
 
 namespace orbweaver::continuation {
@@ -21,7 +22,7 @@ class Tracer {
   [[nodiscard]] const std::optional<Ending>& ending() const { return _ending; }
   [[nodiscard]] const Frontier& frontier() const { return _frontier; }
   /// Whether limits had a part in the last advance: a step that was tried led beyond one.
-  [[nodiscard]] bool met_limit() const { return _met_limit; }
+  [[nodiscard]] bool met_limit() const { return _limits.met(); }
   void go_on_from(Frontier frontier);
   /// Sets the frontier's tangent if it is not known yet.
   void complete_frontier();
@@ -29,14 +30,6 @@ class Tracer {
  private:
   [[nodiscard]] bool begun() const { return !here().modes.empty(); }
   [[nodiscard]] const loop::Loop& here() const { return _frontier.orbit.loop; }
-  [[nodiscard]] bool is_beyond_energies(double value) const {
-    return value > _options.energy_to || value < _options.energy_from;
-  }
-  [[nodiscard]] bool is_beyond_parameters(const Trial& trial) {
-    if (_system->family_scalars().free.empty()) return false;
-    constexpr int parameter = 1;  // among the scalars
-    return continuation::is_beyond_parameters(scalar(trial, parameter), _options);
-  }
   [[nodiscard]] double scalar(const Trial& trial, int number) {
     return trial.values[_problem->scalars_at() + static_cast<std::size_t>(number)];
   }
@@ -51,11 +44,6 @@ class Tracer {
   [[nodiscard]] bool has_passed_rest(const Trial& trial);
   [[nodiscard]] bool resolve_twice();
   [[nodiscard]] double length_to_try();
-  std::optional<Trial> closing_orbit(const Trial& trial, double length);
-  [[nodiscard]] bool is_beyond_limits(const Trial& trial);
-  [[nodiscard]] std::optional<double> turning_beyond_limit(const Trial& trial);
-  std::optional<Orbit> accept_within_limits(const Trial& passed, double length, Ending& refused);
-  std::optional<Orbit> accept_within_guards(Trial trial, double length, Ending& refused);
   Orbit accept(const Trial& trial);
   /// Makes `orbit`, whose loop and numbers are set, the frontier's; `increment`: arclength from the one before.
   void keep(Orbit& orbit, double increment, double amplitude);
@@ -67,10 +55,10 @@ class Tracer {
   Options _options;
   Frontier _frontier;
   std::optional<Ending> _ending;
-  bool _met_limit = false;
   std::unique_ptr<PointProblem> _problem;
   int _halvings = 0;  // Orbit::halvings of the step that is being accepted
   Stepper _stepper;
+  StepLimits _limits;
 };
 
 }  // namespace orbweaver::continuation

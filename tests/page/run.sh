@@ -22,6 +22,10 @@ without_node() {
   grep -q '^// missing' "$out" && grep -q 'Node was not found.*quickstart page' "$out" || { echo "no word of Node in $out"; exit 1; }
   embed "$web" "$(type -P true)" "$(type -P false)"
   grep -q 'is the npm registry reachable' "$out" || { echo "no word of npm in $out"; exit 1; }
+  printf '#!/bin/sh\necho "npm ERR! code SELF_SIGNED_CERT_IN_CHAIN" >&2\nexit 1\n' >"$folder/without_node/npm"
+  chmod +x "$folder/without_node/npm"
+  embed "$web" "$(type -P true)" "$folder/without_node/npm"
+  grep -q '(SELF_SIGNED_CERT_IN_CHAIN; is the npm registry reachable' "$out" || { echo "not why npm failed in $out"; exit 1; }
   printf '#!/bin/sh\nmkdir -p node_modules\n' >"$folder/without_node/npm"
   chmod +x "$folder/without_node/npm"
   local said

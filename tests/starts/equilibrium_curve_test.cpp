@@ -86,12 +86,7 @@ class TwoPitchforks {
   static systems::ModelInfo info() {
     return test::described("two_pitchforks", "two pitchforks at once", {"x", "y"}, {"m"}, 0.0);
   }
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
   template <class P>
   class With {
    public:
@@ -131,12 +126,7 @@ class Pitchforks {
     for (int i = 0; i < dimension; ++i) names.push_back(fmt::format("x{}", i));
     return test::described("pitchforks", "pitchforks of one curve", names, {"m", "a", "b", "c", "o", "u"}, 0.0);
   }
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
   template <class P>
   class With {
    public:
@@ -254,12 +244,7 @@ class Lattice {
     for (int i = 0; i < dimension; ++i) names.push_back(fmt::format("x{}", i));
     return test::described("lattice", "a lattice of pitchforks", names, {"m"}, 0.0);
   }
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
   template <class P>
   class With {
    public:
@@ -300,12 +285,7 @@ class FoldBetweenPitchforks {
   static systems::ModelInfo info() {
     return test::described("fold_between", "a fold between two branch points", {"x", "y"}, {"m"}, 0.0);
   }
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
   template <class P>
   class With {
    public:
@@ -355,12 +335,7 @@ class TwoOscillators {
     return test::described("two_oscillators", "two oscillators, the first pushed by the second", {"x", "u", "y", "v"},
                            {"m", "m1", "m2", "w1", "w2"}, 0.0);
   }
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
   template <class P>
   class With {
    public:

@@ -36,4 +36,12 @@ inline systems::Structure structure_in_plane() {
   return structure;
 }
 
+/// Without an energy, and motions lose their past.
+inline systems::Structure dissipative_structure(int dimension) {
+  systems::Structure structure;
+  structure.dimension = dimension;
+  structure.dissipative = true;
+  return structure;
+}
+
 }  // namespace orbweaver::test

@@ -21,9 +21,7 @@ class DrivenOscillator {
   }
 
   static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
+    systems::Structure structure = test::dissipative_structure(dimension);
     structure.driven = true;
     structure.angles = {2};
     return structure;

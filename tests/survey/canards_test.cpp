@@ -11,6 +11,7 @@
 #include "orbweaver/survey/verify/verify.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
 #include "registry_lines.hpp"
+#include "support/described.hpp"
 #include "survey/atlas.hpp"
 
 namespace canards_test {
@@ -24,13 +25,8 @@ class FitzHughNagumo {
   static constexpr int quantities = 0;
 
   static systems::ModelInfo info() {
-    systems::ModelInfo info;
-    info.name = "fitzhugh_nagumo";
-    info.title = "FitzHugh and Nagumo's neuron";
-    info.meaning = "a neuron";
-    info.state_names = {"v", "w"};
-    info.winding_names = {"", ""};
-    const double any = std::numeric_limits<double>::infinity();
+    constexpr double any = std::numeric_limits<double>::infinity();
+    systems::ModelInfo info = test::described("fitzhugh_nagumo", "a neuron", {"v", "w"});
     info.parameters = {{"I", 0.0, -any, any, false, "1", "current"},
                        {"eps", 0.08, 0.0, any, true, "1", "how slow w is"},
                        {"a", 0.7, -any, any, false, "1", "shift"},
@@ -38,12 +34,7 @@ class FitzHughNagumo {
     return info;
   }
 
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
 
   template <class P>
   class With {
@@ -55,14 +46,6 @@ class FitzHughNagumo {
     void field(const S* z, S* f) const {
       f[0] = z[0] - z[0] * z[0] * z[0] / S(3.0) - z[1] + _current;
       f[1] = (z[0] + _a - z[1] * _b) * _eps;
-    }
-    template <int, class S>
-    S conserved(const S* z) const {
-      return z[0] * 0.0;
-    }
-    template <class S>
-    S action_density(const S* /*z*/) const {
-      return S(std::numeric_limits<double>::quiet_NaN());
     }
 
    private:

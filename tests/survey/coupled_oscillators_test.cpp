@@ -1,7 +1,6 @@
 // Two self-excited oscillators, of which one pulls at the other: the first one's cycle doubles its period twice along
 // the other's excitation.
 #include <array>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,9 +28,7 @@ class CoupledOscillators {
   }
 
   static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
+    systems::Structure structure = test::dissipative_structure(dimension);
     const Eigen::Matrix4d mirror = Eigen::Vector4d(-1, 1, -1, 1).asDiagonal();
     structure.equivariances = {{"S", mirror}};
     return structure;
@@ -50,14 +47,6 @@ class CoupledOscillators {
       f[1] = vy;
       f[2] = vx * (-x * x - y * y * _q + _m) - x - x * x * x * _g - x * y * _k;
       f[3] = vy * (-y * y - x * x * _q + _n) - y * _w * _w - x * x * _k;
-    }
-    template <int, class S>
-    S conserved(const S* z) const {
-      return z[0] * 0.0;
-    }
-    template <class S>
-    S action_density(const S* /*z*/) const {
-      return S(std::numeric_limits<double>::quiet_NaN());
     }
 
    private:

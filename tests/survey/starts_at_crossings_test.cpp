@@ -34,12 +34,7 @@ class Pitchforks {
                            {"p", "a", "b", "c"});
   }
 
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
 
   template <class P>
   class With {
@@ -75,9 +70,7 @@ class DrivenPitchfork {
   }
 
   static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
+    systems::Structure structure = test::dissipative_structure(dimension);
     structure.driven = true;
     structure.angles = {1};
     return structure;
@@ -110,12 +103,7 @@ class RestWithPitchforks {
     return test::described("rest_with_pitchforks", "two pitchforks and a Hopf point", {"x", "y", "u", "v"}, {"p", "o"});
   }
 
-  static systems::Structure structure(const systems::Bound&) {
-    systems::Structure structure;
-    structure.dimension = dimension;
-    structure.dissipative = true;
-    return structure;
-  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
 
   template <class P>
   class With {
