@@ -9,8 +9,8 @@ import { checkPage, folder, text } from './checking.mjs';
 const references = process.env.ORBWEAVER_PAGE_REFERENCES;
 /** Each theme and the narrowest and a usual width; the long test has all. */
 const [widths, pictures] = process.argv[4] === 'all'
-  ? [[360, 760, 1024, 1280, 1920], [[360, 740, 'light'], [360, 740, 'dark'], [1280, 800, 'light'], [1280, 800, 'dark'], [1920, 1080, 'light'], [1920, 1080, 'dark']]]
-  : [[360, 1280], [[360, 740, 'dark'], [1280, 800, 'light']]];
+  ? [[360, 760, 800, 1024, 1280, 1920], [[360, 740, 'light'], [360, 740, 'dark'], [1280, 800, 'light'], [1280, 800, 'dark'], [1920, 1080, 'light'], [1920, 1080, 'dark']]]
+  : [[360, 800, 1280], [[360, 740, 'dark'], [1280, 800, 'light']]];
 
 await checkPage('dark and light, larger text, help and about', 'pendulum', {}, async (page) => {
   const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
@@ -97,6 +97,14 @@ for (const width of widths)
         for (const e of document.querySelectorAll('button, select, input, canvas, [role=treeitem]')) {
           const name = e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.[0]?.textContent.trim();
           if (!name) found.push(`no name: ${e.outerHTML.slice(0, 80)}`);
+        }
+        const pen = document.createElement('canvas').getContext('2d');
+        for (const e of [...document.querySelectorAll('.diagram .select select')].filter(seen)) {
+          const style = getComputedStyle(e);
+          pen.font = style.font;
+          const room = e.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+          const wanted = pen.measureText(e.selectedOptions[0].textContent).width;
+          if (wanted > room) found.push(`"${e.selectedOptions[0].textContent}" takes ${wanted.toFixed(0)} of ${room.toFixed(0)} pixels`);
         }
         return found;
       });

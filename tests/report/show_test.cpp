@@ -74,6 +74,17 @@ TEST(Show, RowsOfAFamilyInChosenColumnsAndOrder) {
   EXPECT_EQ(lines_of(selected(atlas, "families", TextFormat::csv, {"ID1", {"name"}, ""})).size(), 2U);
 }
 
+TEST(Show, TheParameterThatMovesIsAColumnByItsOwnName) {
+  Header header = test::sample_header();
+  header.scale_names = {"time", header.state_names[0], header.state_names[1], header.parameter_names[0]};
+  header.scales = {1.0, 1.0, 1.0, 1.0};
+  const Archive atlas = sample_atlas("moving", header);
+  const std::string& name = header.parameter_names[0];
+  const auto lines = lines_of(selected(atlas, "crossings", TextFormat::csv, {"", {name}, "-" + name}));
+  EXPECT_EQ(lines[0], name);
+  EXPECT_EQ(lines[1], lines_of(selected(atlas, "crossings", TextFormat::csv, {"", {"parameter"}, "-parameter"}))[1]);
+}
+
 TEST(Show, SelectionsOfWhatIsNotThereAreRefused) {
   const Archive atlas = sample_atlas("no_selection", test::sample_header());
   const auto message = [&](const std::string& table, const Selection& selection) -> std::string {

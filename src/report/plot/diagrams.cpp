@@ -171,7 +171,8 @@ Figure tree_figure(const archive::Archive& atlas, const PlotRequest& request) {
 }
 
 Figure energy_period_figure(const archive::Archive& atlas, const PlotRequest& request) {
-  require_values(atlas, FamilyCurves(atlas, request.families), "energy", "the system conserves none");
+  require_values(atlas, FamilyCurves(atlas, request.families), "energy",
+                 "the system conserves none; `tree` draws the periods against the parameter that moves");
   const Axis energy{atlas.moving_parameter().empty() ? level_title(atlas) : "energy E"};
   return plane(atlas, request, "period against energy", energy, "energy", {period_title(atlas)}, "period");
 }

@@ -24,21 +24,35 @@ export const indexWarp: Warp = {
 };
 
 /** The orbits' values at the arclength of a crossing, linearly between its neighbours. */
-function interpolated(atlas: Atlas, crossing: Crossing, values: Float64Array): number {
+function interpolated(atlas: Atlas, crossing: Crossing, values: (orbit: number) => number): number {
   const family = atlas.families[crossing.family]!;
   if (family.count === 0) return NaN;
   const s = (orbit: number): number => atlas.value('arclength', orbit);
   let low = family.first;
   let high = family.first + family.count - 1;
-  if (crossing.arclength <= s(low)) return values[low]!;
-  if (crossing.arclength >= s(high)) return values[high]!;
+  if (crossing.arclength <= s(low)) return values(low);
+  if (crossing.arclength >= s(high)) return values(high);
   while (high - low > 1) {
     const middle = (low + high) >> 1;
     if (s(middle) <= crossing.arclength) low = middle;
     else high = middle;
   }
   const part = (crossing.arclength - s(low)) / (s(high) - s(low));
-  return values[low]! + part * (values[high]! - values[low]!);
+  return values(low) + part * (values(high) - values(low));
+}
+
+/** Moduli of the nontrivial multipliers, the largest first. */
+function moduli(atlas: Atlas, orbit: number): number[] {
+  return atlas.multipliers('stability', orbit).map((m) => Math.hypot(m.re, m.im)).sort((a, b) => b - a);
+}
+
+/** The largest modulus at a crossing, where the one nearest to the unit circle is on it. */
+function largestModulus(atlas: Atlas, crossing: Crossing): number {
+  const count = moduli(atlas, atlas.families[crossing.family]!.first).length;
+  const sizes = Array.from({ length: count }, (_, n) => interpolated(atlas, crossing, (orbit) => moduli(atlas, orbit)[n]!));
+  const far = sizes.map((size) => Math.abs(Math.log(size)));
+  sizes[far.indexOf(Math.min(...far))] = 1;
+  return Math.max(...sizes);
 }
 
 /** All axes that an atlas has: those of which every value is missing are left out. */
@@ -48,7 +62,7 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
   const list: Quantity[] = [];
   const add = (id: string, label: string, short: string, values: Float64Array, more: Partial<Quantity> = {}): void => {
     if (id !== 'T' && !values.some(Number.isFinite)) return;
-    list.push({ id, label, short, values, ofCrossing: (c) => interpolated(atlas, c, values), ...more });
+    list.push({ id, label, short, values, ofCrossing: (c) => interpolated(atlas, c, (orbit) => values[orbit]!), ...more });
   };
   const names = atlas.index.stateNames;
   add('T', 'period T', 'T', column('period'), { ofCrossing: (c) => c.period });
@@ -81,10 +95,7 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
     }
   }
   if (atlas.index.complex)
-    add('rho', 'largest |μ|', '|μ|', Float64Array.from({ length: atlas.orbits }, (_, orbit) => {
-      const sizes = atlas.multipliers('stability', orbit).map((m) => Math.hypot(m.re, m.im));
-      return sizes.length ? Math.max(...sizes) : NaN;
-    }), { warp: indexWarp });
+    add('rho', 'largest |μ|', '|μ|', Float64Array.from({ length: atlas.orbits }, (_, orbit) => moduli(atlas, orbit)[0] ?? NaN), { warp: indexWarp, ofCrossing: (c) => largestModulus(atlas, c) });
   add('amplitude', 'rms amplitude', 'amplitude', column('amplitude'));
   names.forEach((name, i) => add(`max-${name}`, `largest ${name}`, `max ${name}`, column('largest', i)));
   names.forEach((name, i) =>
