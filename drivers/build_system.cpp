@@ -18,11 +18,11 @@
 #include "orbweaver/core/file_hash.hpp"
 #include "orbweaver/core/input_file.hpp"
 #include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/output_file.hpp"
+#include "orbweaver/core/posix_file.hpp"
 #include "orbweaver/core/process.hpp"
-#include "orbweaver/core/scratch_file.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
-#include "output_file.hpp"
 
 namespace orbweaver::drivers {
 
@@ -70,11 +70,11 @@ void compile(const std::vector<std::string>& words, const std::string& what) {
 }
 
 /// The source and the files beside it that it includes: what a rule of make lists.
-std::vector<fs::path> sources_of(const fs::path& source, std::vector<std::string> words, const fs::path& output) {
-  const core::ScratchFile rule(fs::path(output).concat(".d"));
-  words.insert(words.end(), {"-MM", source.string(), "-MF", rule.path().string()});
+std::vector<fs::path> sources_of(const fs::path& source, std::vector<std::string> words, const fs::path& scratch) {
+  const fs::path rule = scratch / "rule.d";
+  words.insert(words.end(), {"-MM", source.string(), "-MF", rule.string()});
   compile(words, source.string());
-  std::ifstream stream(rule.path());
+  std::ifstream stream(rule);
   std::vector<fs::path> files;
   std::string word;
   for (stream >> word; stream >> word;)
@@ -97,13 +97,12 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
     throw core::InputError("expected either the source of a model, or --model and --effects");
   if (options.source.empty() == false && !options.effects.empty())
     throw core::InputError("--effects are those of a --model of the program; a source names its own");
-  require_output_file(options.output, options.source);
-  std::unique_ptr<core::ScratchFile> generated;
+  core::require_output_file(options.output, options.source);
+  const core::TemporaryFolder scratch;
   fs::path source = options.source;
   if (source.empty()) {
-    generated = std::make_unique<core::ScratchFile>(fs::path(options.output).concat(".cpp"));
-    source = generated->path();
-    std::ofstream(source) << combination(options);
+    source = scratch.path() / "combination.cpp";
+    core::write_file(source, {combination(options)});
   }
   if (const std::string got = core::unreadable_input(source); !got.empty())
     throw core::InputError(
@@ -112,8 +111,8 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
   const InstalledFiles at = installed_files();
   require_headers(at);
   const std::vector<std::string> words = compiler_words(at);
-  const std::string hash = core::file_hash(sources_of(source, words, options.output));
-  const core::ScratchFile unfinished(fs::path(options.output).concat(".part"));
+  const std::string hash = core::file_hash(sources_of(source, words, scratch.path()));
+  core::PartFile unfinished(options.output);
   std::vector<std::string> build = words;
   build.insert(build.end(), {fmt::format("-DORBWEAVER_PLUGIN_SOURCE=\"{}\"", hash),
                              "-DORBWEAVER_PLUGIN_VERSION=\"" ORBWEAVER_VERSION "\"", "-shared", "-fPIC", "-Wl,-z,lazy",
@@ -122,7 +121,7 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
   core::write_line(stderr, fmt::format("compiling {} for all scalars: about half a minute", what));
   compile(build, what);
   const systems::Plugin& plugin = systems::load_plugin(unfinished.path());
-  fs::rename(unfinished.path(), options.output);
+  unfinished.publish();
   print_result(fmt::format("{}: {}, source {}\n", options.output.string(), fmt::join(plugin.models, ", "), hash));
   return 0;
 }

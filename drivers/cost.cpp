@@ -11,10 +11,10 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/cost/ladders.hpp"
 #include "orbweaver/report/cost/cost_report.hpp"
-#include "output_file.hpp"
 #include "same_input.hpp"
 #include "unused_options.hpp"
 
@@ -30,7 +30,8 @@ struct CostOptions {
 };
 
 void write_csv(const std::filesystem::path& directory, const cost::Table& table) {
-  write_output_file(directory / (table.name + ".csv"), [&](std::ostream& file) { file << report::table_csv(table); });
+  core::write_output_file(directory / (table.name + ".csv"),
+                          [&](std::ostream& file) { file << report::table_csv(table); });
 }
 
 void make_folder(const std::filesystem::path& directory) {
@@ -51,8 +52,12 @@ void measure_on(const core::Communicator& comm, const CostOptions& options) {
     if (table.printed) print_result(report::table_text(table));
     if (options.directory.empty()) return;
     write_csv(options.directory, table);
-    for (const report::Picture& picture : report::pictures_of(table, options.format))
-      has_gnuplot = has_gnuplot && report::draw(options.directory, picture);
+    for (const report::Picture& picture : report::pictures_of(table, options.format)) {
+      const core::TemporaryFolder folder;
+      has_gnuplot = has_gnuplot && report::draw(folder.path(), picture);
+      for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        core::copy_output_file(entry.path(), options.directory / entry.path().filename());
+    }
   };
   alike_on_all_ranks(comm, [&] {
     cost::measure(comm, scene, options.cost, take);

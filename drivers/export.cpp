@@ -8,9 +8,9 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/report/export/auto_restart.hpp"
 #include "orbweaver/report/export/export_orbits.hpp"
-#include "output_file.hpp"
 #include "result_stream.hpp"
 
 namespace orbweaver::drivers {
@@ -37,7 +37,7 @@ int run(const ExportOptions& options) {
   if (!options.equations.empty() && options.equations == options.output)
     throw core::InputError("expected --equations in another file than -o");
   for (const std::filesystem::path& file : {options.output, options.equations})
-    if (!file.empty()) require_output_file(file, options.atlas);
+    if (!file.empty()) core::require_output_file(file, options.atlas);
   const archive::Archive atlas(options.atlas);
   const std::string equations = options.equations.empty() ? std::string() : report::auto_equations(atlas);
   if (options.output.empty()) {
@@ -45,9 +45,10 @@ int run(const ExportOptions& options) {
     write_orbits(out, atlas, options);
     out.finish();
   } else {
-    write_output_file(options.output, [&](std::ostream& file) { write_orbits(file, atlas, options); });
+    core::write_output_file(options.output, [&](std::ostream& file) { write_orbits(file, atlas, options); });
   }
-  if (!options.equations.empty()) write_output_file(options.equations, [&](std::ostream& file) { file << equations; });
+  if (!options.equations.empty())
+    core::write_output_file(options.equations, [&](std::ostream& file) { file << equations; });
   return static_cast<int>(core::ExitStatus::done);
 }
 

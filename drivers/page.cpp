@@ -9,7 +9,7 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/error.hpp"
-#include "output_file.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "page/page_template.hpp"
 
 namespace orbweaver::drivers {
@@ -22,12 +22,12 @@ struct PageOptions {
 };
 
 int run(const PageOptions& options) {
-  require_output_file(options.output, options.atlas);
+  core::require_output_file(options.output, options.atlas);
   const archive::Archive atlas(options.atlas);
   const std::string_view page = page_template();
   if (page.empty()) throw core::EnvironmentError(fmt::format("cannot make a page: {}", missing_page_reason()));
   report::PageSummary summary;
-  write_output_file(options.output, [&](std::ostream& file) { summary = report::write_page(file, atlas, page); });
+  core::write_output_file(options.output, [&](std::ostream& file) { summary = report::write_page(file, atlas, page); });
   const auto megabytes = [](std::size_t bytes) { return static_cast<double>(bytes) / 1e6; };
   print_result(fmt::format("{}: {:.1f} MB, {} families, {} orbits\n", options.output.string(), megabytes(summary.bytes),
                            summary.families, summary.orbits));

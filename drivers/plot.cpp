@@ -1,10 +1,6 @@
 #include "orbweaver/report/plot/plot.hpp"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,8 +12,8 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/core/petsc/session.hpp"
-#include "output_file.hpp"
 
 namespace orbweaver::drivers {
 
@@ -29,45 +25,16 @@ struct PlotOptions {
   std::filesystem::path output;
 };
 
-/// A folder of this process, which goes with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code code;
-    const std::filesystem::path where = std::filesystem::temp_directory_path(code);
-    if (code) throw core::EnvironmentError(fmt::format("TMPDIR names no folder: {}", code.message()));
-    std::string name = (where / "orbweaver_plot_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw core::EnvironmentError(
-          fmt::format("cannot make the folder {}: {}; TMPDIR says where", name, std::strerror(errno)));
-    _path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(_path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return _path; }
-
- private:
-  std::filesystem::path _path;
-};
-
 int run(const PlotOptions& options, const Invocation& invocation) {
   report::PlotRequest request = options.request;
   std::optional<core::Session> session;
   if (report::plot_computes(request.what)) session.emplace(invocation.petsc_options);
   request.format = report::plot_format_of(options.output);
-  require_output_file(options.output, options.atlas);
+  core::require_output_file(options.output, options.atlas);
   const archive::Archive atlas(options.atlas);
-  const TemporaryFolder folder;
+  const core::TemporaryFolder folder;
   const std::filesystem::path picture = report::draw_plot(atlas, request, folder.path());
-  write_output_file(options.output, [&](std::ostream& file) {
-    std::ifstream drawn(picture, std::ios::binary);
-    if (!(file << drawn.rdbuf())) throw core::EnvironmentError("gnuplot has drawn nothing; its messages are above");
-  });
+  core::copy_output_file(picture, options.output);
   return static_cast<int>(core::ExitStatus::done);
 }
 

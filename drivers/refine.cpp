@@ -16,9 +16,9 @@
 #include "failure.hpp"
 #include "orbweaver/archive/read/reader.hpp"
 #include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/refine/stored_family.hpp"
 #include "orbweaver/report/refined_text.hpp"
-#include "output_file.hpp"
 
 namespace orbweaver::drivers {
 
@@ -93,13 +93,14 @@ Outcome refine_crossing(const archive::Archive& atlas, const RefineOptions& opti
 int refine_command(const RefineOptions& options) {
   if (options.crossing.has_value() == !options.family.empty() || options.family.empty() != options.orbit.empty())
     throw core::InputError("expected FAMILY and ORBIT (a step, T=.., E=.. or PARAMETER=..), or --crossing ROW");
-  if (!options.output.empty()) require_output_file(options.output, options.atlas);
+  if (!options.output.empty()) core::require_output_file(options.output, options.atlas);
   const archive::Archive atlas(options.atlas);
   const auto start = std::chrono::steady_clock::now();
   const Outcome outcome = options.crossing ? refine_crossing(atlas, options) : refine_one(atlas, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   print_result(outcome.text);
-  if (!options.output.empty()) write_output_file(options.output, [&](std::ostream& file) { file << outcome.text; });
+  if (!options.output.empty())
+    core::write_output_file(options.output, [&](std::ostream& file) { file << outcome.text; });
   core::write_line(stderr,
                    fmt::format("{:.2f} s: {} digits of arithmetic, Taylor series of order {}, {} steps", seconds,
                                outcome.orbit.working_digits, outcome.orbit.taylor_order, outcome.orbit.steps));

@@ -5,9 +5,9 @@
 #include "common_options.hpp"
 #include "failure.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/sweep_report.hpp"
-#include "output_file.hpp"
 #include "unused_options.hpp"
 
 namespace orbweaver::drivers {
@@ -25,12 +25,12 @@ int run(const SweepOptions& options, const Invocation& invocation) {
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
   if (!comm.is_root()) return 0;  // not distributed: under mpirun rank 0 does it
-  if (!options.csv.empty()) require_output_file(options.csv, options.scene.file);
+  if (!options.csv.empty()) core::require_output_file(options.csv, options.scene.file);
   const auto reports = report::sweep_report(scene);
   print_result(report::to_text(reports));
   if (options.table) print_result("\n" + report::eigenvalue_table(reports));
   if (!options.csv.empty())
-    write_output_file(options.csv, [&](std::ostream& file) { file << report::eigenvalue_csv(reports); });
+    core::write_output_file(options.csv, [&](std::ostream& file) { file << report::eigenvalue_csv(reports); });
   warn_of_unused_options(session, core::Communicator(MPI_COMM_SELF));
   return 0;
 }

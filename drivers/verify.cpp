@@ -12,12 +12,12 @@
 #include "failure.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/prove/proof_file.hpp"
 #include "orbweaver/report/proof_text.hpp"
 #include "orbweaver/report/verify_text.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
-#include "output_file.hpp"
 #include "same_input.hpp"
 
 namespace orbweaver::drivers {
@@ -52,7 +52,7 @@ void require_options_fit(const VerifyOptions& options) {
 /// Proves orbits of an archive, one after the other; what cannot be proven does not stop the others.
 bool prove_orbits(const VerifyOptions& options) {
   if (!options.output.empty()) {
-    require_output_file(options.output, options.atlas);
+    core::require_output_file(options.output, options.atlas);
     if (std::filesystem::exists(options.output) && !std::filesystem::is_regular_file(options.output))
       throw core::InputError(fmt::format("cannot write {}: proofs need a file", options.output.string()));
   }

@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/posix_file.hpp"
 #include "orbweaver/core/process.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
@@ -114,13 +114,6 @@ std::string source(const systems::Formulas& formulas) {
   return text + subroutines;
 }
 
-void write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", path.string()));
-}
-
 }  // namespace
 
 std::string AutoProgram::obstacle(const TrueOrbit& truth) {
@@ -130,23 +123,14 @@ std::string AutoProgram::obstacle(const TrueOrbit& truth) {
   return {};
 }
 
-AutoProgram::AutoProgram(const Setting& setting, const Directed& guess)
-    : _setting(setting),
-      _guess(guess),
-      _folder(std::filesystem::temp_directory_path() / fmt::format("orbweaver_auto_{}", getpid())) {
-  std::filesystem::create_directories(_folder);
-  write(_folder / "system.f90", source(refine::refinable_formulas(*setting.plain())));
+AutoProgram::AutoProgram(const Setting& setting, const Directed& guess) : _setting(setting), _guess(guess) {
+  core::write_file(_folder.path() / "system.f90", {source(refine::refinable_formulas(*setting.plain()))});
   std::vector<std::string> words{"gfortran",   "-O3", "-march=native", "-fopenmp", "-w", "-fallow-argument-mismatch",
                                  "system.f90", "-o",  "program"};
   for (const auto& entry : std::filesystem::directory_iterator(auto_folder() / "lib"))
     if (entry.path().extension() == ".o") words.push_back(entry.path().string());
-  if (core::run_program(words, {.folder = _folder}) != 0)
+  if (core::run_program(words, {.folder = _folder.path()}) != 0)
     throw core::EnvironmentError("gfortran could not compile the system for AUTO-07p; its messages are above");
-}
-
-AutoProgram::~AutoProgram() {
-  std::error_code ignored;
-  std::filesystem::remove_all(_folder, ignored);
 }
 
 void AutoProgram::prepare(int intervals, double tolerance) const {
@@ -158,28 +142,29 @@ void AutoProgram::prepare(int intervals, double tolerance) const {
     for (const double z : loop::state_at(start, start.period * j / count)) text += fmt::format(" {:.17g}", z);
     text += "\n";
   }
-  write(_folder / "guess.dat", text);
+  core::write_file(_folder.path() / "guess.dat", {text});
   const loop::Loop change = loop::in_units(loop::perturbation(_guess.loop, _guess.tangent), system.scales());
   const double along =
       step * start.period * loop::rms_size(change) / std::abs(_guess.tangent.period() * system.scales().time);
   const double accuracy = std::max(tolerance, least_tolerance);
-  write(_folder / "c.run",
-        fmt::format("parnames={{1:'mu',11:'PERIOD'}}\nNDIM={}, NTST={}, NCOL={}, IAD=3, IPLT=0, NINT=0, NMX=2, NPR=0, "
-                    "MXBF=0, IID=0, ITMX=8, ITNW=12, NWTN=3, JAC=1\nEPSL={:.0e}, EPSU={:.0e}, EPSS={:.0e}, DS={:.6e}, "
-                    "DSMIN=1e-12, DSMAX={:.6e}, IADS=1, NPAR=16, THL={{11:0.0}}, THU={{}}, ILP=0\n"
-                    "ISW=1, IPS=2, IRS=0, ISP=0, NBC=0\nICP=['PERIOD','mu']\n",
-                    system.dimension(), intervals, points, accuracy, accuracy, accuracy, along, along));
+  core::write_file(
+      _folder.path() / "c.run",
+      {fmt::format("parnames={{1:'mu',11:'PERIOD'}}\nNDIM={}, NTST={}, NCOL={}, IAD=3, IPLT=0, NINT=0, NMX=2, NPR=0, "
+                   "MXBF=0, IID=0, ITMX=8, ITNW=12, NWTN=3, JAC=1\nEPSL={:.0e}, EPSU={:.0e}, EPSS={:.0e}, DS={:.6e}, "
+                   "DSMIN=1e-12, DSMAX={:.6e}, IADS=1, NPAR=16, THL={{11:0.0}}, THU={{}}, ILP=0\n"
+                   "ISW=1, IPS=2, IRS=0, ISP=0, NBC=0\nICP=['PERIOD','mu']\n",
+                   system.dimension(), intervals, points, accuracy, accuracy, accuracy, along, along)});
 }
 
 bool AutoProgram::run() const {
   std::error_code ignored;
-  std::filesystem::remove(_folder / "found.dat", ignored);
-  return core::run_program({(_folder / "program").string()},
-                           {.folder = _folder, .input = _folder / "c.run", .quiet = true}) == 0;
+  std::filesystem::remove(_folder.path() / "found.dat", ignored);
+  return core::run_program({(_folder.path() / "program").string()},
+                           {.folder = _folder.path(), .input = _folder.path() / "c.run", .quiet = true}) == 0;
 }
 
 refine::ShotOrbit AutoProgram::found() const {
-  std::ifstream file(_folder / "found.dat");
+  std::ifstream file(_folder.path() / "found.dat");
   int count = 0;
   refine::ShotOrbit orbit;
   file >> count >> orbit.period;

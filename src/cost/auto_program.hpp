@@ -1,9 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "correction.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/refine/shoot.hpp"
 #include "setting.hpp"
 #include "true_orbit.hpp"
@@ -21,7 +21,6 @@ class AutoProgram {
 
   /// Throws EnvironmentError where it cannot be compiled.
   AutoProgram(const Setting& setting, const Directed& guess);
-  ~AutoProgram();
   AutoProgram(const AutoProgram&) = delete;
   AutoProgram& operator=(const AutoProgram&) = delete;
 
@@ -39,7 +38,7 @@ class AutoProgram {
  private:
   const Setting& _setting;
   Directed _guess;
-  std::filesystem::path _folder;
+  core::TemporaryFolder _folder;
 };
 
 }  // namespace orbweaver::cost

@@ -1,11 +1,11 @@
 #include "gnuplot.hpp"
 
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/posix_file.hpp"
 #include "orbweaver/core/process.hpp"
 #include "orbweaver/core/text.hpp"
 
@@ -27,14 +27,11 @@ std::string_view ending_of(PlotFormat format) {
 }
 
 bool run_gnuplot(const std::filesystem::path& folder, const std::string& name, const std::string& script) {
-  const std::filesystem::path path = folder / (name + ".gnuplot");
-  std::ofstream file(path);
-  file << "cd " << gnuplot_text(std::filesystem::absolute(folder).string()) << "\n" << script;
-  file.close();
-  if (!file) throw core::EnvironmentError(fmt::format("cannot write {}", path.string()));
+  const std::filesystem::path path = name + ".gnuplot";
+  core::write_file(folder / path, {script});
   // Without a locale, as in containers, gnuplot says that it cannot write the degree sign.
   const std::optional<int> status =
-      core::run_program({"gnuplot", path.string()}, {.environment = {{"LC_ALL", "C.UTF-8"}}});
+      core::run_program({"gnuplot", path.string()}, {.folder = folder, .environment = {{"LC_ALL", "C.UTF-8"}}});
   if (!status) return false;
   if (*status != 0)
     throw core::EnvironmentError(fmt::format("gnuplot could not draw {}; its messages are above", path.string()));

@@ -34,7 +34,8 @@ Vector<D> reflector(const Vector<D>& vector, Eigen::Index begin) {
 
 [[noreturn]] void refuse_field(double length) {
   if (!std::isfinite(length))
-    throw core::NotFiniteError("Floquet multipliers: the field is not finite at a state of the loop");
+    throw core::NotFiniteError(
+        "Floquet multipliers: the field or a derivative of it is not finite at a state of the loop");
   throw core::NumericalError(
       "Floquet multipliers: expected an orbit that moves, but the field vanishes at a state of "
       "the loop; it has collapsed onto an equilibrium");

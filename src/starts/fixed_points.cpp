@@ -130,7 +130,8 @@ void sort_by_coordinates(std::vector<std::vector<double>>& points) {
                                       angle ? told * 180.0 / std::numbers::pi : told, angle ? " deg" : ""));
   }
   throw core::InputError(
-      fmt::format("starts.fixed_points.grid: expected a point where the vector field of {} is finite, got none, the "
+      fmt::format("starts.fixed_points.grid: expected a point where the vector field of {} and its derivatives are "
+                  "finite, got none, the "
                   "first ({}); give other points or, beside starts that need no equilibrium, leave the grid out",
                   system.info().name, fmt::join(coordinates, ", ")));
 }

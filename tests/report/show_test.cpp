@@ -74,6 +74,14 @@ TEST(Show, RowsOfAFamilyInChosenColumnsAndOrder) {
   EXPECT_EQ(lines_of(selected(atlas, "families", TextFormat::csv, {"ID1", {"name"}, ""})).size(), 2U);
 }
 
+TEST(Show, TextsThatASpreadsheetWouldRunAreQuoted) {
+  Records records = test::sample_records(test::sample_header());
+  records.families[0].name = "=HYPERLINK(A1)";
+  const Archive atlas(test::write_sample_atlas(test::fresh_folder("formula"), test::sample_header(), records));
+  EXPECT_THAT(lines_of(selected(atlas, "families", TextFormat::csv, {"", {"name"}, ""}))[1], "\"'=HYPERLINK(A1)\"");
+  EXPECT_THAT(lines_of(selected(atlas, "families", TextFormat::json, {"", {"name"}, ""}))[1], HasSubstr("\"=HYP"));
+}
+
 TEST(Show, TheParameterThatMovesIsAColumnByItsOwnName) {
   Header header = test::sample_header();
   header.scale_names = {"time", header.state_names[0], header.state_names[1], header.parameter_names[0]};

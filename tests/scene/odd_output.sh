@@ -64,19 +64,53 @@ ended 0 "" export atlas.h5 --format csv -o /dev/null
 [ -c /dev/full ] && [ -c /dev/null ] && [ "$link" = "$(ls -l /dev/stdout)" ] || fail "a device is gone"
 ended 2 "proofs need a file" verify atlas.h5 --prove Out-Phase 3 -o /dev/null
 
-# Something else where a file is on its way: it is refused, named, not waited for, and still there.
-mkfifo way.part way.svg.part
+# Whatever has the name of a file on its way stays as it is, and is not waited for: links to other files, to the archive that is
+# read, second names of files, pipes and folders.
+echo victim > victim
+victims=$(sha1sum victim atlas.h5)
+for way in way way.svg; do
+  ln -s victim $way.part
+  ln -s atlas.h5 $way.1.part
+  ln victim $way.2.part
+  mkfifo $way.3.part
+  mkdir $way.4.part
+  ln -s nowhere/file $way.5.part
+done
+links=$(ls -l --time-style=+ way.*part way.svg.*part)
 for words in "export atlas.h5 --format csv" "page atlas.h5" "refine atlas.h5 Out-Phase 3" \
   "verify atlas.h5 --prove Out-Phase 3 --quiet"; do
-  ended 3 "way.part" $words -o way
+  rm -f way
+  ended 0 "" $words -o way
+  [ -s way ] && [ ! -L way ] || fail "nothing was written: $words"
 done
-ended 3 "way.part" sweep scene.yaml --csv way
-ended 3 "way.svg.part" plot atlas.h5 tree -o way.svg
-rm way.part way.svg.part
-mkdir way.part
-ended 3 "way.part" export atlas.h5 --format csv -o way
-[ -d way.part ] || fail "a folder of the user's is gone"
-rmdir way.part
+ended 0 "" sweep scene.yaml --csv way
+ended 0 "" plot atlas.h5 tree -o way.svg
+ended 2 "no family" plot atlas.h5 tree --family Nobody -o way.svg
+ended 2 "it has no symbol" build-system source.cpp -o way
+[ "$victims" = "$(sha1sum victim atlas.h5)" ] || fail "another file was written through a link"
+[ "$links" = "$(ls -l --time-style=+ way.*part way.svg.*part)" ] || fail "what had a name is gone"
+rm -r way way.svg way.*part
+# Two at once: both end well, and the file is one of theirs.
+for n in 1 2 3; do
+  "$program" export atlas.h5 --format csv -o both > said1 2>&1 &
+  first=$!
+  ended 0 "" page atlas.h5 -o both
+  wait $first || fail "the other of two at once failed: $(cat said1)"
+done
+"$program" export atlas.h5 --format csv > one && "$program" page atlas.h5 -o other > said 2>&1 || fail "alone"
+cmp -s both one || cmp -s both other || fail "two at once have left what is neither's"
+rm both one other
+# A survey's own names: links there go, what they lead to stays.
+mkdir -p stopped
+ln -s ../victim stopped/atlas.h5.part
+ended 0 "" survey scene.yaml -o stopped -q --set limits.period=5 --set survey.depth=0
+rm stopped/atlas.h5
+ln -s ../../victim stopped/segments/checkpoint.part
+ln victim stopped/segments/segment-000002.h5.part
+ln -s ../victim stopped/atlas.h5.part
+ended 0 "" survey scene.yaml -o stopped --resume -q --set limits.period=6 --set survey.depth=0
+[ "$victims" = "$(sha1sum victim atlas.h5)" ] || fail "another file was written through a link in a survey's folder"
+rm -r stopped
 mkdir stopped
 mkfifo stopped/atlas.h5.part
 ended 3 "stopped/atlas.h5.part" survey scene.yaml -o stopped -q --set limits.period=5 --set survey.depth=0

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -69,6 +70,27 @@ ModelInfo info_with(const std::string& name, const std::string& meaning) {
   info.winding_names = {"", ""};
   info.parameters = {{"k", 1.0, 0.0, 2.0, false, "1", meaning}};
   return info;
+}
+
+TEST(Description, NamesItsPartsOnceAndFinitely) {
+  const auto refused = [](const ModelInfo& info, const char* why) {
+    EXPECT_THAT([&] { require_description(info); }, ThrowsMessage<core::InputError>(HasSubstr(why)));
+  };
+  ModelInfo info = info_with("mine", "");
+  info.state_names = {"q", "q"};
+  refused(info, "two of its coordinates are named `q`");
+  info = info_with("mine", "");
+  info.parameters.push_back(info.parameters.front());
+  refused(info, "two of its parameters are named `k`");
+  info = info_with("mine", "");
+  info.parameters.front().standard = std::numeric_limits<double>::quiet_NaN();
+  refused(info, "its parameter `k` has the standard value nan");
+  info = info_with("mine", "");
+  for (int n = 0; n < 100'000; ++n) {
+    info.parameters.push_back(info.parameters.front());
+    info.parameters.back().name = "k" + std::to_string(n);
+  }
+  refused(info, "its 100001 parameters are more than an archive's head holds: expected at most 7500");
 }
 
 TEST(Description, IsOneLineOfText) {

@@ -16,7 +16,7 @@ namespace orbweaver::archive {
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "lock";
-  _descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  _descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (_descriptor < 0)
     throw core::EnvironmentError(fmt::format("cannot create '{}': {}. Check the folder and its permissions.",
                                              path.string(), std::strerror(errno)));

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "h5_types.hpp"
-#include "posix_file.hpp"
+#include "orbweaver/core/posix_file.hpp"
 #include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
@@ -155,20 +155,20 @@ std::uint64_t FileLayout::bytes() const {
 
 void create_layout_file(const std::filesystem::path& path, const FileLayout& layout) {
   const std::uint64_t bytes = layout.bytes();
-  try_out_file(path, bytes + metadata_bytes);
+  core::try_out_file(path, bytes + metadata_bytes);
   Layout file(path, Layout::Begin::anew);
   file.write_attributes(layout.format, layout.header);
   for (const auto& [table, rows] : layout.tables) file.create_table(table, rows);
   for (const auto& [spec, count] : layout.flats) file.create_dataset(spec.name, spec, count);
   file.close();
-  reserve_space(path, std::filesystem::file_size(path));
+  core::reserve_space(path, std::filesystem::file_size(path));
 }
 
 void add_table_to_file(const std::filesystem::path& path, const TableSpec& table, std::uint64_t rows) {
   Layout file(path, Layout::Begin::with_what_is_there);
   file.create_table(table, rows);
   file.close();
-  reserve_space(path, std::filesystem::file_size(path));
+  core::reserve_space(path, std::filesystem::file_size(path));
 }
 
 }  // namespace orbweaver::archive

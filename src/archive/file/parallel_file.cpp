@@ -8,7 +8,7 @@
 #include "h5_types.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/pause.hpp"
-#include "posix_file.hpp"
+#include "orbweaver/core/posix_file.hpp"
 
 namespace orbweaver::archive {
 
@@ -38,7 +38,7 @@ void ParallelFile::abandon() noexcept {
 
 void ParallelFile::open_together() {
   // Open MPI hangs when opening fails on some ranks only.
-  core::collectively(_comm, [&] { expect_writable(_part); });
+  core::collectively(_comm, [&] { core::expect_writable(_part); });
   core::collectively(_comm, [&] {
     const H5Handle access(check_h5(H5Pcreate(H5P_FILE_ACCESS), "H5Pcreate"), H5Pclose);
     check_h5(H5Pset_fapl_mpio(access.get(), _comm, MPI_INFO_NULL), "H5Pset_fapl_mpio");
@@ -110,11 +110,11 @@ void ParallelFile::add_table(const Table& mine) {
 
 void ParallelFile::publish() {
   close_together();
-  core::collectively(_comm, [&] { sync_file(_part); });
+  core::collectively(_comm, [&] { core::sync_file(_part); });
   core::collectively(_comm, [&] {
     if (core::rank_of(_comm) != 0) return;
     core::pause_point("publish " + _path.filename().string());
-    rename_file(_part, _path);
+    core::rename_file(_part, _path);
   });
   _published = true;
 }

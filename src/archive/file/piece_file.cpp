@@ -7,7 +7,7 @@
 #include <zlib.h>
 
 #include "orbweaver/core/error.hpp"
-#include "posix_file.hpp"
+#include "orbweaver/core/posix_file.hpp"
 
 namespace orbweaver::archive {
 
@@ -20,9 +20,9 @@ std::uint32_t checksum_of(std::string_view bytes) {
 }  // namespace
 
 Piece PieceWriter::append(std::string_view bytes) {
-  if (!_is_made) write_at(_path, 0, {}, true);
+  if (!_is_made) core::write_at(_path, 0, {}, true);
   _is_made = true;
-  write_at(_path, _end, bytes, false);
+  core::write_at(_path, _end, bytes, false);
   const Piece piece{_end, bytes.size(), checksum_of(bytes)};
   _is_synced = false;
   _end += bytes.size();
@@ -31,15 +31,14 @@ Piece PieceWriter::append(std::string_view bytes) {
 
 void PieceWriter::sync() {
   if (_is_synced) return;
-  sync_file(_path);
-  if (!_is_named) sync_folder_of(_path);
+  core::sync_file(_path);
+  if (!_is_named) core::sync_folder_of(_path);
   _is_synced = _is_named = true;
 }
 
 std::string read_piece(const std::filesystem::path& path, const Piece& piece) {
   const auto refuse = [&](const std::string& what) {
-    throw core::InputError(
-        fmt::format("{}, {} bytes from {} on: {}", path.string(), piece.bytes, piece.offset, what));
+    throw core::InputError(fmt::format("{}, {} bytes from {} on: {}", path.string(), piece.bytes, piece.offset, what));
   };
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) refuse("the file is not there, or is not a regular one");

@@ -11,7 +11,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/pause.hpp"
-#include "posix_file.hpp"
+#include "orbweaver/core/posix_file.hpp"
 
 namespace orbweaver::archive {
 
@@ -69,11 +69,11 @@ void write(const std::filesystem::path& path, const std::filesystem::path* previ
   append(head, checksum(head, bytes));
   const std::filesystem::path part = path.string() + ".part";
   try {
-    write_file(part, {head, bytes});
+    core::write_file(part, {head, bytes});
     core::pause_point("publish " + path.filename().string());
-    if (previous != nullptr && std::filesystem::exists(path)) rename_file(path, *previous);
+    if (previous != nullptr && std::filesystem::exists(path)) core::rename_file(path, *previous);
     core::pause_point("replace " + path.filename().string());
-    rename_file(part, path);
+    core::rename_file(part, path);
   } catch (const core::EnvironmentError&) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
@@ -97,9 +97,8 @@ std::string read_sealed(const std::filesystem::path& path, const Seal& seal) {
   if (all.size() < head_bytes || all.compare(0, mark_bytes, seal.mark) != 0)
     refuse(path, "it does not begin as such a file should: it is torn, or another program's");
   const auto version = number_at<std::uint32_t>(all, mark_bytes);
-  const std::string reads = seal.oldest == seal.version
-                                ? fmt::format("version {}", seal.version)
-                                : fmt::format("versions {} to {}", seal.oldest, seal.version);
+  const std::string reads = seal.oldest == seal.version ? fmt::format("version {}", seal.version)
+                                                        : fmt::format("versions {} to {}", seal.oldest, seal.version);
   if (version > seal.version)
     throw core::NewerVersionError(
         fmt::format("{}: its version is {}, and this Orbweaver reads {}; nothing was changed: use the newer "

@@ -10,10 +10,9 @@
 #include "h5_types.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/input_file.hpp"
-#include "orbweaver/core/scratch_file.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/core/text.hpp"
 #include "own_dataset.hpp"
-#include "posix_file.hpp"
 
 namespace orbweaver::archive {
 
@@ -117,9 +116,8 @@ void write_text_table(const std::filesystem::path& path, const TextTable& table)
   for (const std::vector<std::string>& column : table.values)
     core::require(column.size() == table.values.front().size(), "columns are of one length");
   quiet_h5();
-  const core::ScratchFile scratch(path.string() + ".part");
-  const std::filesystem::path& part = scratch.path();
-  try_out_file(part, 1);
+  core::PartFile whole(path);
+  const std::filesystem::path& part = whole.path();
   {
     const H5Handle creation = timeless(H5P_FILE_CREATE);
     H5Handle file(check_h5(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT),
@@ -140,8 +138,7 @@ void write_text_table(const std::filesystem::path& path, const TextTable& table)
     write_column(file, table.name + '/' + checksum_column, checksums);
     file.close(fmt::format("cannot close '{}'", part.string()));
   }
-  sync_file(part);
-  rename_file(part, path);
+  whole.publish();
 }
 
 TextTable read_text_table(const std::filesystem::path& path, const TextTable& expected) {

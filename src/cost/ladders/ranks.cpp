@@ -9,13 +9,13 @@
 
 #include <fmt/format.h>
 #include <mpi.h>
-#include <unistd.h>
 
 #include "correction.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/check_mpi.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/mpi/team.hpp"
+#include "orbweaver/core/output_file.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 #include "orbweaver/survey/run/survey.hpp"
 #include "timing.hpp"
@@ -41,17 +41,13 @@ std::optional<core::Communicator> first_ranks(const core::Communicator& comm, in
   return own;
 }
 
-std::filesystem::path scratch_folder(const core::Communicator& comm) {
-  int process = static_cast<int>(getpid());
-  core::check_mpi(MPI_Bcast(&process, 1, MPI_INT, 0, comm.get()), "MPI_Bcast");
-  return std::filesystem::temp_directory_path() / fmt::format("orbweaver_cost_{}", process);
-}
-
 /// Patiences that a survey may take.
 constexpr double of_survey = 3.0;
 
 void survey_with(const Setting& setting, const core::Communicator& part, int count, Table& table) {
-  const std::filesystem::path folder = scratch_folder(part);
+  std::optional<core::TemporaryFolder> own;
+  core::on_root(part.get(), [&] { own.emplace(); });
+  const std::filesystem::path folder = core::agreed(part.get(), own ? own->path().string() : std::string());
   const double most = std::min(setting.asked().limits.time, of_survey * setting.patience());
   const scene::Scene bases =
       scene::parse(setting.asked().text, "the scene", {"survey.depth=0", fmt::format("limits.time={}", most)});
@@ -59,8 +55,6 @@ void survey_with(const Setting& setting, const core::Communicator& part, int cou
   const double seconds =
       seconds_of([&] { summary = survey::run_survey(part, bases, setting.plain(), folder, {survey::Display::none}); });
   if (!part.is_root()) return;
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
   table.rows.push_back({"survey", count, static_cast<double>(summary.orbits), seconds, {}});
   if (summary.stopped_early)
     table.remarks.push_back(fmt::format("the survey on {} ranks was stopped after {:g} s", count, most));

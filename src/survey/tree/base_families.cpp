@@ -76,7 +76,8 @@ std::vector<std::vector<double>> remark_grid(const scene::Scene& scene, const sy
   std::vector<std::vector<double>> found = starts::find_fixed_points(system, scene.fixed_points.grid, &passed_over);
   if (!passed_over.empty())
     summary.remarks.push_back(
-        fmt::format("points of starts.fixed_points.grid passed over, where the field is not finite: {}, the first {}",
+        fmt::format("points of starts.fixed_points.grid passed over, where the field or a derivative of it is not "
+                    "finite: {}, the first {}",
                     passed_over.size(), point_text(system, passed_over.front())));
   return found;
 }

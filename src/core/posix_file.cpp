@@ -1,4 +1,4 @@
-#include "posix_file.hpp"
+#include "orbweaver/core/posix_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -15,7 +15,7 @@
 
 #include "orbweaver/core/error.hpp"
 
-namespace orbweaver::archive {
+namespace orbweaver::core {
 
 namespace {
 
@@ -23,15 +23,15 @@ constexpr std::size_t bytes_at_once = std::size_t{16} << 20;
 
 [[noreturn]] void throw_system_error(const char* doing, const std::filesystem::path& path) {
   const int code = errno;
-  throw core::EnvironmentError(fmt::format("cannot {} '{}': {}. Check the folder, its permissions and the free space.",
-                                           doing, path.string(), std::strerror(code)));
+  throw EnvironmentError(fmt::format("cannot {} '{}': {}. Check the folder, its permissions and the free space.", doing,
+                                     path.string(), std::strerror(code)));
 }
 
-/// Of a file or a folder: a pipe is refused, and not waited for.
+/// Of a file or a folder: a pipe is refused, and not waited for; a link that has a file's name is not followed.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& path, int flags, const char* doing)
-      : _number(open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0666)) {
+      : _number(open(path.c_str(), flags | (flags & O_DIRECTORY ? 0 : O_NOFOLLOW) | O_CLOEXEC | O_NONBLOCK, 0666)) {
     const bool has_no_reader = _number < 0 && errno == ENXIO;
     if (_number < 0 && !has_no_reader) throw_system_error(doing, path);
     struct stat kind {};
@@ -39,9 +39,9 @@ class Descriptor {
         !has_no_reader && fstat(_number, &kind) == 0 && (S_ISREG(kind.st_mode) || S_ISDIR(kind.st_mode));
     if (is_file) return;
     if (_number >= 0) close(_number);
-    throw core::EnvironmentError(fmt::format(
-        "cannot {} '{}': a pipe, a socket or a device lies there. Remove it, or give another place.", doing,
-        path.string()));
+    throw EnvironmentError(
+        fmt::format("cannot {} '{}': a pipe, a socket or a device lies there. Remove it, or give another place.", doing,
+                    path.string()));
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -51,6 +51,13 @@ class Descriptor {
  private:
   int _number;
 };
+
+/// A new file. A file or a link of that name goes first; a pipe or a folder is somebody's, and stays.
+Descriptor created(const std::filesystem::path& path) {
+  struct stat kind {};
+  if (lstat(path.c_str(), &kind) == 0 && (S_ISREG(kind.st_mode) || S_ISLNK(kind.st_mode))) unlink(path.c_str());
+  return {path, O_WRONLY | O_CREAT | O_EXCL, "create"};
+}
 
 void reserve(const Descriptor& file, int mode, std::uint64_t bytes, const std::filesystem::path& path) {
   // File systems without this call cannot be asked in advance.
@@ -66,7 +73,7 @@ void sync(const std::filesystem::path& path, int flags) {
 }  // namespace
 
 void try_out_file(const std::filesystem::path& path, std::uint64_t bytes) {
-  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, "create");
+  const Descriptor file = created(path);
   reserve(file, 0, bytes, path);
   const std::array<char, 4096> block{};
   const off_t last = static_cast<off_t>(bytes > block.size() ? bytes - block.size() : 0);
@@ -84,7 +91,7 @@ void expect_writable(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces) {
-  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, "create");
+  const Descriptor file = created(path);
   off_t begun = 0;  // what the disk was told to write, while the next piece is copied
   off_t size = 0;
   for (std::string_view piece : pieces)
@@ -123,4 +130,4 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
   sync_folder_of(to);
 }
 
-}  // namespace orbweaver::archive
+}  // namespace orbweaver::core
