@@ -244,11 +244,14 @@ void BranchEvents::add_event(const bifurcation::Event& event, double from, doubl
 
 /// Positions as they are: which arclength they have is known of the last few orbits only.
 void BranchEvents::add_missed(const bifurcation::MissedZeros& missed) {
-  const bifurcation::Sector& sector = _followed.functions[missed.function].sector;
-  _followed.outcome.unlocated.push_back(fmt::format(
-      "a multiplier passes exp(2 pi i {}/{}), or its inverse, {} times more than was found, {} to {} of the "
-      "survey's lengths along the family",
-      sector.j, sector.q, missed.count, missed.from, missed.to));
+  const bifurcation::TestFunction& function = _followed.functions[missed.function];
+  const std::string what =
+      bifurcation::has_sector(function.kind)
+          ? fmt::format("a multiplier passes exp(2 pi i {}/{}), or its inverse,", function.sector.j, function.sector.q)
+          : "a complex pair of multipliers passes the unit circle";
+  _followed.outcome.unlocated.push_back(
+      fmt::format("{} {} times more than was found, {} to {} of the survey's lengths along the family", what,
+                  missed.count, missed.from, missed.to));
 }
 
 bool BranchEvents::add_short_of_meeting(const bifurcation::TestPoint& nearest) {
