@@ -248,6 +248,7 @@ bool add_places(Arrival& arrival, continuation::FamilyCurve& family, const bifur
     before = here;
     places.push_back(*std::move(point));
   }
+  arrival.position = meeting;
   return is_all_the_way;
 }
 

@@ -211,8 +211,9 @@ std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optiona
     if (_followed.curve.known().size() > 2) _events.add_paired_folds(_followed.curve.known().size() - 2);
     return {};
   }
+  const double left = arrival->position - way.points.back().position;
   add_behind(way.points);
-  _events.go_to_meeting(_followed.last->arclength);
+  _events.go_to_meeting(_followed.last->arclength, way.points.back().position + left);
   std::vector<continuation::Orbit> behind = orbits_to_zeros(way.points);
   const std::vector<bifurcation::Fold> folds = folds_on(*_followed.system, _followed.start.isotropy, way);
   _events.add_folds(folds, _followed.curve.known());
