@@ -83,20 +83,14 @@ bool turns_before(const Reading& before, const Reading& here, const Reading& aft
   return expected * here.sign() < -(past_zero * std::abs(after.value) + before.error + here.error + after.error);
 }
 
-double passed_at(const TestPoint& point, std::size_t function) {
-  return point.passed.empty() ? std::numeric_limits<double>::quiet_NaN() : point.passed[function];
-}
-
-/// Zeros that a function has passed between two places, 0 where that is not known.
-int passed_between(double from, double to) {
-  const double change = std::abs(to - from);
-  return std::isnan(change) ? 0 : static_cast<int>(change);
+ZerosPassed passed_at(const TestPoint& point, std::size_t function) {
+  return point.passed.empty() ? ZerosPassed{} : point.passed[function];
 }
 
 /// Whether some function has passed several zeros between two points: its signs would show every other one.
 bool pass_several(const TestPoint& from, const TestPoint& to) {
   for (std::size_t f = 0; f < from.readings.size(); ++f)
-    if (passed_between(passed_at(from, f), passed_at(to, f)) > 1) return true;
+    if (zeros_between(passed_at(from, f), passed_at(to, f)) > 1) return true;
   return false;
 }
 
@@ -114,12 +108,24 @@ void add_sign_changes(std::size_t function, const std::vector<Node>& nodes, std:
 void add_double_zeros(std::size_t function, const std::vector<Node>& nodes, std::vector<Bracket>& found) {
   const Node* before = nullptr;
   for (const Node& node : nodes) {
-    if (std::isnan(node.passed)) continue;
-    if (before != nullptr && passed_between(before->passed, node.passed) == 2)
+    if (!node.passed.is_known() || !has_sector(node.passed.function.kind)) continue;
+    if (before != nullptr && zeros_between(before->passed, node.passed) == 2)
       found.push_back(
           {.function = function, .from = before->position, .to = node.position, .tangency = false, .is_double = true});
     before = &node;
   }
+}
+
+/// Zeros that are passed from node to node: of a dissipative system more nodes tell more passages from turns.
+int zeros_along(const std::vector<Node>& nodes) {
+  int count = 0;
+  const Node* before = nullptr;
+  for (const Node& node : nodes) {
+    if (!node.passed.is_known()) continue;
+    if (before != nullptr) count += zeros_between(before->passed, node.passed);
+    before = &node;
+  }
+  return count;
 }
 
 }  // namespace
@@ -190,9 +196,10 @@ std::vector<TestPoint> Detector::subdivided(const TestPoint& next, const Probe& 
   return {grid.begin() + known, grid.end()};
 }
 
-/// Closes in on the minimum of |value| between two nodes of one sign: a bracket where it may be zero.
-void Detector::examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
-                       std::vector<Bracket>& found) {
+/// Closes in on the minimum of |value| between two nodes of one sign: a bracket where it may be zero. Returns how
+/// many zeros are passed, as the counts of all that was probed tell.
+int Detector::examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
+                      std::vector<Bracket>& found) {
   const int sign = left.reading.sign();
   std::vector<Node> nodes{left, right};
   bool crossed = false;
@@ -215,6 +222,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
   const double length = right.position - left.position;
   (void)numerics::locate_minimum(size, left.position, right.position, minimum_width * length, _options.probes);
   std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.position < b.position; });
+  const int passed = zeros_along(nodes);
   double& examined_to = _state.watches[function].examined_to;
   const std::size_t before = found.size();
   if (crossed)
@@ -223,7 +231,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
     add_double_zeros(function, nodes, found);
   if (found.size() > before) {
     examined_to = right.position;
-    return;
+    return passed;
   }
   // Orbits are lost where they are not isolated, as on a zero: what the minimum is, its location is to say.
   if (without_point) {
@@ -235,7 +243,7 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
                      .tangency = true,
                      .lost = true});
     examined_to = right.position;
-    return;
+    return passed;
   }
   // Relative to the ends: near its birth a family's index leaves 2 like a power of its distance, small but not at a
   // zero.
@@ -248,25 +256,26 @@ void Detector::examine(std::size_t function, const Node& left, const Node& right
     return std::abs(a.reading.value) < std::abs(b.reading.value);
   });
   if (least->position < right.position - at_end * length) examined_to = right.position;
-  if (!zero(*least) || !(least->reading.error <= _options.tangency_error)) return;
-  if (least == nodes.begin() || least + 1 == nodes.end()) return;
+  if (!zero(*least) || !(least->reading.error <= _options.tangency_error)) return passed;
+  if (least == nodes.begin() || least + 1 == nodes.end()) return passed;
   auto from = least;
   auto to = least;
   while (from != nodes.begin() && zero(*from)) --from;
   while (to + 1 != nodes.end() && zero(*to)) ++to;
   found.push_back({function, from->position, to->position, true});
   examined_to = right.position;
+  return passed;
 }
 
 /// Brackets of zeros that the function has passed between two nodes one by one, as their counts tell, where places
 /// between them are found that part these. Else one of all, if the sign tells one.
 void Detector::part(std::size_t function, const Node& left, const Node& right, int halvings, const Probe& probe,
                     std::vector<Bracket>& found) const {
-  if (halvings > 0 && passed_between(left.passed, right.passed) > 1)
+  if (halvings > 0 && zeros_between(left.passed, right.passed) > 1)
     for (const double share : parting_shares) {
       const double position = left.position + share * (right.position - left.position);
       const std::optional<TestPoint> point = probed(probe, position);
-      if (!point || point->readings[function].sign() == 0 || std::isnan(passed_at(*point, function))) continue;
+      if (!point || point->readings[function].sign() == 0 || !passed_at(*point, function).is_known()) continue;
       const Node middle{position, point->readings[function], passed_at(*point, function)};
       part(function, left, middle, halvings - 1, probe, found);
       return part(function, middle, right, halvings - 1, probe, found);
@@ -277,18 +286,19 @@ void Detector::part(std::size_t function, const Node& left, const Node& right, i
 /// Brackets the zeros that the function has passed between two nodes, as their counts tell, and signs do not show.
 void Detector::count(std::size_t function, const Node& left, const Node& right, const Probe& probe,
                      std::vector<Bracket>& found) {
-  const int passed = passed_between(left.passed, right.passed);
+  int passed = zeros_between(left.passed, right.passed);
   if (passed == 0) return;
   const bool is_shown = left.reading.sign() != right.reading.sign();
   std::vector<Bracket> parted;
   if (is_shown && passed > 1) part(function, left, right, most_partings, probe, parted);
   if (parted.size() > 1) found.pop_back();  // that of all
   const std::size_t before = found.size();
-  if (!is_shown) examine(function, left, right, probe, found);
+  if (!is_shown) passed = std::min(passed, examine(function, left, right, probe, found));
   found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
                              [](const Bracket& bracket) { return bracket.lost; }),
               found.end());
-  for (std::size_t n = before; n < found.size(); ++n) found[n].passed = found[n].tangency && passed == 1;
+  for (std::size_t n = before; n < found.size(); ++n)
+    found[n].passed = found[n].tangency && passed == 1 && !right.passed.outside;  // there a sign would show it
   if (found.size() > before) _state.watches[function].examined_to = right.position;
   int bracketed = is_shown && parted.size() <= 1 ? 1 : 0;
   for (std::size_t n = before; n < found.size(); ++n) bracketed += found[n].is_double ? 2 : 1;
@@ -329,7 +339,7 @@ void Detector::take(std::size_t function, const Node& node, const Probe& probe, 
   if (!last.empty()) {
     if (last.back().reading.sign() != node.reading.sign())
       found.push_back({function, last.back().position, node.position, false});
-    else if (watch.undecided && passed_between(last.back().passed, node.passed) == 0)
+    else if (watch.undecided && zeros_between(last.back().passed, node.passed) == 0)
       examine(function, last.back(), node, probe, found);
     count(function, last.back(), node, probe, found);
   }

@@ -73,7 +73,7 @@ const Rule& checked_rule(const TestFunction& function, const systems::Structure&
 constexpr double told_to = 1e-4;
 constexpr double near_circle = 3.0;
 
-/// How many of several indices, or multipliers, are above the function's place: none passes it unseen while all are
+/// How many of several indices are above the function's place: none passes it unseen while all are
 /// real.
 double indices_above(const TestFunction& function, const systems::Structure& system,
                      const spectrum::Stability& stability) {
@@ -148,16 +148,33 @@ double value_over(const TestFunction& function, const systems::Structure& system
   return signed_mean(rule.factors_over(system, function.sector, indices_of(system, stability), size)).value;
 }
 
-double zeros_passed(const TestFunction& function, const systems::Structure& system,
-                    const spectrum::Stability& stability) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (!has_sector(function.kind)) return unknown;
-  if (std::isnan(stability.turns)) return indices_above(function, system, stability);
+ZerosPassed zeros_passed(const TestFunction& function, const systems::Structure& system,
+                         const spectrum::Stability& stability) {
+  ZerosPassed passed{function};
+  passed.outside = outside_circle(system, stability);
+  if (!system.symplectic || !has_sector(function.kind)) return passed;
+  if (std::isnan(stability.turns)) {
+    passed.number = indices_above(function, system, stability);
+    return passed;
+  }
   const double place = static_cast<double>(function.sector.j) / function.sector.q;
-  if (function.sector.q > 2) return std::floor(stability.turns - place) + std::floor(stability.turns + place);
   const double index = stability.fundamental.front().real();
   const bool has_opened = function.sector.q == 1 ? index >= 2.0 : index <= -2.0;
-  return has_opened ? unknown : std::floor(stability.turns - place);
+  if (function.sector.q > 2)
+    passed.number = std::floor(stability.turns - place) + std::floor(stability.turns + place);
+  else if (!has_opened)
+    passed.number = std::floor(stability.turns - place);
+  return passed;
+}
+
+int zeros_between(const ZerosPassed& from, const ZerosPassed& to) {
+  if (!from.outside || !to.outside) {
+    const double change = std::abs(to.number - from.number);
+    return std::isnan(change) ? 0 : static_cast<int>(change);
+  }
+  const CirclePassages passages = least_passages(*from.outside, *to.outside);
+  if (!has_sector(to.function.kind)) return passages.as_pairs;
+  return to.function.sector.q == 1 ? passages.at_one : passages.at_minus_one;
 }
 
 double torus_sum(const systems::Structure& system, const spectrum::Stability& stability) {

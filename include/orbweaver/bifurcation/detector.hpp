@@ -13,15 +13,13 @@ namespace orbweaver::bifurcation {
 
 /// An orbit of a family with its test functions.
 struct TestPoint {
-  double position;                ///< along the family (arclength), increasing
-  std::vector<Reading> readings;  ///< one a test function, in the caller's order
-  /// How many zeros of each function the family has passed, but for a constant (`zeros_passed`); NaN where that is not
-  /// known. Empty: of none.
-  std::vector<double> passed{};
+  double position;                    ///< along the family (arclength), increasing
+  std::vector<Reading> readings;      ///< one a test function, in the caller's order
+  std::vector<ZerosPassed> passed{};  ///< of each function (`zeros_passed`); empty: of none that is known
   double turns = std::numeric_limits<double>::quiet_NaN();  ///< spectrum::Stability::turns, of an elliptic orbit only
   int halvings = 0;  ///< the way to it from the point before is halved so often in any case
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, position, readings, passed, turns, halvings);
@@ -79,9 +77,9 @@ struct DetectorState {
   struct Node {
     double position = 0.0;
     Reading reading{};
-    double passed = std::numeric_limits<double>::quiet_NaN();  ///< of TestPoint::passed
+    ZerosPassed passed{};  ///< of TestPoint::passed
 
-    static constexpr int wire_version = 2;
+    static constexpr int wire_version = 3;
     template <class Archive>
     void serialize(Archive& archive, unsigned /*version*/) {
       core::serialize_members(archive, position, reading, passed);
@@ -150,8 +148,8 @@ class Detector {
             std::vector<Bracket>& found) const;
   void look_for_minimum(std::size_t function, const Node& a, const Node& b, const Node& c, const Probe& probe,
                         std::vector<Bracket>& found);
-  void examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
-               std::vector<Bracket>& found);
+  int examine(std::size_t function, const Node& left, const Node& right, const Probe& probe,
+              std::vector<Bracket>& found);
   [[nodiscard]] std::optional<TestPoint> probed(const Probe& probe, double position) const;
 
   DetectorOptions _options;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "orbweaver/bifurcation/outside_circle.hpp"
 #include "orbweaver/bifurcation/sector.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
@@ -80,13 +83,33 @@ struct TestFunction {
 [[nodiscard]] double value_over(const TestFunction& function, const systems::Structure& system,
                                 const spectrum::Stability& stability, double size);
 
-/// How many zeros of the function a family has passed whose multiplier has turned so far (`Stability::turns`), but for
-/// a constant. Of several pairs that are no complex quadruplet: how many indices are above the place, which changes by
-/// as many as pass it upwards more than downwards. NaN where that is not known: of functions without a sector, for
-/// q = 1 and 2 at orbits that have opened there (an index beyond 2, or -2), where the sign tells, and where an index is
-/// at the place within its error.
-[[nodiscard]] double zeros_passed(const TestFunction& function, const systems::Structure& system,
-                                  const spectrum::Stability& stability);
+/// What an orbit's multipliers tell of the zeros of one function that its family has passed.
+struct ZerosPassed {
+  TestFunction function{};
+  /// How many, but for a constant, of a symplectic system; NaN where that is not known.
+  double number = std::numeric_limits<double>::quiet_NaN();
+  std::optional<OutsideCircle> outside{};  ///< of a dissipative system
+
+  [[nodiscard]] bool is_known() const { return outside || !std::isnan(number); }
+
+  static constexpr int wire_version = 1;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned /*version*/) {
+    core::serialize_members(archive, function, number, outside);
+  }
+};
+
+/// Dissipative: the multipliers outside the circle. Symplectic, where a multiplier has turned so far
+/// (`Stability::turns`): a number of its zeros. Of several pairs that are no complex quadruplet: how many indices are
+/// above the place, which changes by as many as pass it upwards more than downwards. Not known: of functions without a
+/// sector, for q = 1 and 2 at orbits that have opened there (an index beyond 2, or -2), where the sign tells, and where
+/// an index is at the place within its error.
+[[nodiscard]] ZerosPassed zeros_passed(const TestFunction& function, const systems::Structure& system,
+                                       const spectrum::Stability& stability);
+
+/// How many zeros of the function have been passed between two orbits of a family, at least (`least_passages`); 0 where
+/// that is not known.
+[[nodiscard]] int zeros_between(const ZerosPassed& from, const ZerosPassed& to);
 
 /// Whether double precision tells at the orbit what its indices pass: false where one of a pair that is on the unit
 /// circle, or near it (|k| <= 3), is known to worse than 1e-4. Beside a motion a thousand times as fast the phase that

@@ -239,8 +239,10 @@ bool add_places(Arrival& arrival, continuation::FamilyCurve& family, const bifur
     const bool turns =
         part > slipped && watch.relative_size(arrival.gain, first.loop, point->loop) > beside * part_from(first);
     if (turns) is_all_the_way = false;
-    if (turns || !(part > slipped)) {  // beyond the meeting, or the corrector has slipped onto the family that is met
-      meeting = beyond = place;
+    // Beyond the meeting, or the corrector has slipped onto the family that is met. No orbit says nothing of where.
+    if (turns || !(part > slipped)) {
+      meeting = place;
+      if (point) beyond = place;
       continue;
     }
     const Place here{place, part};
@@ -248,6 +250,7 @@ bool add_places(Arrival& arrival, continuation::FamilyCurve& family, const bifur
     before = here;
     places.push_back(*std::move(point));
   }
+  arrival.position = meeting;
   return is_all_the_way;
 }
 

@@ -180,11 +180,12 @@ class Location {
   queue::TaskOutcome without_crossing(bifurcation::NotLocated why, const continuation::FamilyCurve& family) {
     queue::TaskOutcome done;
     why.period *= Units(*_system).time;
-    // Only minima that come near zero, and functions that vanish for other reasons, may turn out to be nothing.
-    done.failed = !_event.tangency && !is_zero(why);
+    // Where no sign changes, and where functions vanish for other reasons, there may be nothing.
+    const bool is_shown = !_event.tangency && !_event.is_double;
+    done.failed = is_shown && !is_zero(why);
     _outcome.remark = to_text(why);
     const bool is_told = why.reason == bifurcation::NotLocated::Reason::no_event;
-    _outcome.undecided = _event.passed || (!is_told && (_event.tangency || is_zero(why)));
+    _outcome.undecided = _event.passed || (!is_told && (!is_shown || is_zero(why)));
     if (done.failed)
       if (const std::string hidden = hidden_by_rounding(*_system, _work, family, why.reason, _team); !hidden.empty()) {
         done.failed = false;

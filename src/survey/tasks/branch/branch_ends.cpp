@@ -69,7 +69,7 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
       stability_of(*_followed.system, _followed.start.base, _followed.start.isotropy, _followed.team);
   if (birth) bifurcation::tell_birth(_followed.system->structure(), *birth);
   bifurcation::TestPoint at_birth = _followed.test_point(known[0].position, birth);
-  const std::vector<double> passed_at_birth = std::exchange(at_birth.passed, {});
+  const std::vector<bifurcation::ZerosPassed> passed_at_birth = std::exchange(at_birth.passed, {});
   for (bifurcation::Reading& reading : at_birth.readings) {
     const bool is_zero = std::abs(reading.value) <= bifurcation::zero_at_birth;
     reading.error = is_zero ? bifurcation::zero_at_birth : 0.0;  // orbits are not isolated there, and have no bounds
@@ -92,15 +92,15 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
   // none.
   for (std::size_t f = 0; f < _followed.functions.size(); ++f) {
     const auto place = std::find_if(places.begin(), places.end(),
-                                    [&](const bifurcation::TestPoint& one) { return !std::isnan(one.passed[f]); });
+                                    [&](const bifurcation::TestPoint& one) { return one.passed[f].is_known(); });
     if (_followed.functions[f].sector.q <= 2 || place == places.end()) continue;
-    const double passed = std::abs(place->passed[f] - passed_at_birth[f]);
-    const auto bracketed = std::count_if(found.begin(), found.end(), [&](const bifurcation::Bracket& b) {
-      return b.function == f && b.to <= place->position;
-    });
-    if (passed > 1.0 && passed > static_cast<double>(bracketed))
-      _events.add_missed(
-          {f, known[0].position, place->position, static_cast<int>(passed) - static_cast<int>(bracketed)});
+    const int passed = bifurcation::zeros_between(passed_at_birth[f], place->passed[f]);
+    const auto bracketed =
+        static_cast<int>(std::count_if(found.begin(), found.end(), [&](const bifurcation::Bracket& b) {
+          return b.function == f && b.to <= place->position;
+        }));
+    if (passed > 1 && passed > bracketed)
+      _events.add_missed({f, known[0].position, place->position, passed - bracketed});
   }
 }
 
@@ -211,8 +211,9 @@ std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optiona
     if (_followed.curve.known().size() > 2) _events.add_paired_folds(_followed.curve.known().size() - 2);
     return {};
   }
+  const double left = arrival->position - way.points.back().position;
   add_behind(way.points);
-  _events.go_to_meeting(_followed.last->arclength);
+  _events.go_to_meeting(_followed.last->arclength, way.points.back().position + left);
   std::vector<continuation::Orbit> behind = orbits_to_zeros(way.points);
   const std::vector<bifurcation::Fold> folds = folds_on(*_followed.system, _followed.start.isotropy, way);
   _events.add_folds(folds, _followed.curve.known());

@@ -19,9 +19,9 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// Of the way from a birth: an orbit that rounding leaves open by more across its family tells no index of 2 there. Not
-/// measured.
-constexpr double open_at_birth = 0.1;
+/// Of the way from a birth or to a meeting: an orbit that rounding leaves open by more across its family tells no index
+/// of 2 there. Not measured.
+constexpr double open_at_end = 0.1;
 /// Of the function of the multiplier 1, which is zero at a meeting: at the nearest orbit before it that is found. Not
 /// measured.
 constexpr double short_of_meeting = 0.5;
@@ -61,32 +61,39 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
 }
 
 /// An index leaves 2 there like a power of the way, within what rounding makes of it first: its bound does not tell.
-bool BranchEvents::is_hidden_by_birth(double position, const loop::Loop& loop) const {
-  if (position <= _hidden_to) return true;
-  if (position >= _told_from) return false;
+bool BranchEvents::is_hidden_beside_end(double way, const loop::Loop& loop) const {
+  if (way <= _hidden_to) return true;
+  if (way >= _told_from) return false;
   const double across = continuation::left_open_by_rounding(*_followed.system, loop, _followed.start.isotropy).across;
-  const bool is_told =
-      across > 0.0 && across < open_at_birth * continuation::arclength_between(_followed.start.base, loop);
-  (is_told ? _told_from : _hidden_to) = position;
+  const bool is_told = across > 0.0 && across < open_at_end * way;
+  (is_told ? _told_from : _hidden_to) = way;
   return !is_told;
 }
 
 void BranchEvents::forget_hidden() {
-  _hidden_to = -std::numeric_limits<double>::infinity();
+  _hidden_to = 0.0;
   _told_from = std::numeric_limits<double>::infinity();
+}
+
+void BranchEvents::go_to_meeting(double last, double meeting) {
+  forget_hidden();
+  _last = last;
+  _meeting = meeting;
 }
 
 bifurcation::TestPoint BranchEvents::test_point(double position, const loop::Loop& loop,
                                                 const std::optional<spectrum::Stability>& stability) const {
   bifurcation::TestPoint point = _followed.test_point(position, stability);
-  const bool is_first = _followed.work.lineage.depth > 0 && position <= 0.0;
+  const bool is_behind = position > _last;
+  const bool is_beside_end = is_behind || (_followed.work.lineage.depth > 0 && position <= 0.0);
   for (std::size_t f = 0; f < point.readings.size(); ++f) {
-    if (!is_of_one(_followed.functions[f])) continue;
+    if (!is_beside_end || !is_of_one(_followed.functions[f])) continue;
     double& error = point.readings[f].error;
-    if (is_first || position > _last) error *= bifurcation::error_margin;
+    error *= bifurcation::error_margin;
     const double size = std::abs(point.readings[f].value);
-    if (is_first && size > error && size <= bifurcation::zero_at_birth && is_hidden_by_birth(position, loop))
-      error = bifurcation::zero_at_birth;
+    if (!(size > error) || size > bifurcation::zero_at_birth) continue;
+    const double way = is_behind ? _meeting - position : continuation::arclength_between(_followed.start.base, loop);
+    if (is_hidden_beside_end(way, loop)) error = bifurcation::zero_at_birth;
   }
   return point;
 }
@@ -244,11 +251,14 @@ void BranchEvents::add_event(const bifurcation::Event& event, double from, doubl
 
 /// Positions as they are: which arclength they have is known of the last few orbits only.
 void BranchEvents::add_missed(const bifurcation::MissedZeros& missed) {
-  const bifurcation::Sector& sector = _followed.functions[missed.function].sector;
-  _followed.outcome.unlocated.push_back(fmt::format(
-      "a multiplier passes exp(2 pi i {}/{}), or its inverse, {} times more than was found, {} to {} of the "
-      "survey's lengths along the family",
-      sector.j, sector.q, missed.count, missed.from, missed.to));
+  const bifurcation::TestFunction& function = _followed.functions[missed.function];
+  const std::string what =
+      bifurcation::has_sector(function.kind)
+          ? fmt::format("a multiplier passes exp(2 pi i {}/{}), or its inverse,", function.sector.j, function.sector.q)
+          : "a complex pair of multipliers passes the unit circle";
+  _followed.outcome.unlocated.push_back(
+      fmt::format("{} {} times more than was found, {} to {} of the survey's lengths along the family", what,
+                  missed.count, missed.from, missed.to));
 }
 
 bool BranchEvents::add_short_of_meeting(const bifurcation::TestPoint& nearest) {

@@ -57,7 +57,7 @@ bifurcation::TestPoint FollowedBranch::test_point(double position,
     out.readings.push_back(decided ? bifurcation::evaluate(function, system->structure(), *stability)
                                    : bifurcation::Reading{archive::not_computed, archive::not_computed});
     out.passed.push_back(decided ? bifurcation::zeros_passed(function, system->structure(), *stability)
-                                 : archive::not_computed);
+                                 : bifurcation::ZerosPassed{});
   }
   if (decided && bifurcation::is_elliptic(*stability)) out.turns = stability->turns;
   return out;
