@@ -12,6 +12,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "failure.hpp"
+#include "orbweaver/core/address_space.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/in_scales.hpp"
@@ -422,14 +423,15 @@ std::string orbit_cost_text(const survey::OrbitCost& cost) {
                      time, bytes_text(cost.memory_bytes), bytes_text(cost.archive_bytes));
 }
 
-/// Throws InputError where the scene asks for what this machine cannot do.
-void print_cost(const scene::Scene& scene, const systems::System& system) {
-  const survey::ExpectedWork work = survey::expected_work(scene, system);
-  survey::require_memory(work, survey::usable_memory());
+void print_cost(const survey::ExpectedWork& work) {
+  const core::AddressSpace space = core::space_of_a_rank();
   print_group("Cost, about", {{"sweep", fmt::format("{:.0f} periods at each equilibrium, {:.2g} s at most",
                                                     work.sweep_periods, work.sweep_seconds)},
                               {fmt::format("K = {}", work.least.cutoff), orbit_cost_text(work.least)},
-                              {fmt::format("K = {}", work.most.cutoff), orbit_cost_text(work.most)}});
+                              {fmt::format("K = {}", work.most.cutoff), orbit_cost_text(work.most)},
+                              {"addresses", fmt::format("{} a rank, {} of them data, before its first orbit (`ulimit "
+                                                        "-v`, `-d`); more where there are several ranks",
+                                                        bytes_text(space.addresses), bytes_text(space.data))}});
 }
 
 int check(const SceneOptions& options, const Invocation& invocation) {
@@ -440,6 +442,8 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   const scene::Scene scene = options.load();
   const auto bound = scene::bound_system(scene.system);
   const systems::System& system = *bound;
+  const survey::ExpectedWork work = survey::expected_work(scene, system);
+  survey::require_memory(work);
   const survey::ScaledScene scaled(scene, bound);
   const survey::ExpectedStarts expected = survey::expected_starts(scaled.scene(), *scaled.system());
   const std::vector<std::vector<double>> points = resting_points(scene, system);
@@ -452,7 +456,7 @@ int check(const SceneOptions& options, const Invocation& invocation) {
   print_limits(scene, system, expected);
   print_events(scene);
   print_outputs(scene, system);
-  print_cost(scene, system);
+  print_cost(work);
   print_result("");  // throws if what was printed cannot be written
   return 0;
 }

@@ -13,18 +13,18 @@
 #include <unistd.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/log/log.hpp"
+#include "signals.hpp"
 
 namespace orbweaver::drivers {
 
 namespace {
 
-/// Names a file that the first rank removes: mpirun ends with status 1 both where ranks do and where it starts none.
-constexpr const char* mark_variable = "ORBWEAVER_LAUNCH_MARK";
 constexpr int largest_status = static_cast<int>(core::ExitStatus::stopped_early);
 constexpr int no_such_program = 127;  // as a shell says it
 constexpr int signal_status = 128;    // and a signal's number: what mpirun ends with
 
-/// A file that is there until the ranks run.
+/// A file that is there until the ranks run: mpirun ends with status 1 both where ranks do and where it starts none.
 class Mark {
  public:
   Mark() {
@@ -37,7 +37,10 @@ class Mark {
     close(file);
     setenv(mark_variable, _path.c_str(), 1);
   }
-  ~Mark() { unlink(_path.c_str()); }
+  ~Mark() {
+    unlink(_path.c_str());
+    forget_passed_on();
+  }
   Mark(const Mark&) = delete;
   Mark& operator=(const Mark&) = delete;
 
@@ -62,21 +65,39 @@ class Mark {
   _exit(no_such_program);
 }
 
-/// Waits for the process and passes signals on; its wait status.
-int wait_for(pid_t process, bool stops_on_signals) {
-  sigset_t awaited;
-  sigemptyset(&awaited);
-  for (const int signal : {SIGTERM, SIGUSR1, SIGINT, SIGCHLD}) sigaddset(&awaited, signal);
-  int passed_on = 0;
+struct Waited {
+  int status = 0;    // as waitpid has it
+  int ended_by = 0;  // a signal that was to end the ranks at once; 0: none
+};
+
+/// Waits for the process and passes signals on.
+Waited wait_for(pid_t process, bool stops_on_signals) {
+  sigset_t awaited = stopping_signals();
+  sigaddset(&awaited, SIGCHLD);
+  Waited waited;
+  bool interrupted = false;
   for (;;) {
-    int status = 0;
-    if (waitpid(process, &status, WNOHANG) == process) return status;
+    if (waitpid(process, &waited.status, WNOHANG) == process) return waited;
     int signal = 0;
     if (sigwait(&awaited, &signal) != 0 || signal == SIGCHLD) continue;
-    // mpirun passes SIGUSR1 on to the ranks and ends with their status; SIGTERM ends them.
-    kill(process, stops_on_signals && passed_on == 0 ? SIGUSR1 : SIGTERM);
-    passed_on += signal == SIGINT || !stops_on_signals ? 1 : 0;
+    if (stops_on_signals && !interrupted) {
+      interrupted = signal == SIGINT;
+      tell_passed_on(signal);
+      kill(process, SIGUSR1);  // which mpirun passes on to the ranks, and ends with their status
+    } else {
+      waited.ended_by = signal;
+      kill(process, SIGTERM);  // ends them
+    }
   }
+}
+
+/// Ends this process as the signal would have without us.
+void end_by(int signal) {
+  forget_passed_on();
+  unlink(std::getenv(mark_variable));
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+  release_signals();
 }
 
 }  // namespace
@@ -100,8 +121,10 @@ int launch(const Launch& options, const std::vector<std::string>& words) {
   const pid_t process = fork();
   if (process < 0) throw core::EnvironmentError(fmt::format("cannot start mpirun: {}", std::strerror(errno)));
   if (process == 0) become_mpirun(all, self_id);
-  const int status = wait_for(process, options.stops_on_signals);
+  const Waited waited = wait_for(process, options.stops_on_signals);
+  if (waited.ended_by != 0) end_by(waited.ended_by);
 
+  const int status = waited.status;
   const int ended = WIFEXITED(status) ? WEXITSTATUS(status) : signal_status + WTERMSIG(status);
   if (ended == no_such_program && mark.is_there())
     throw core::EnvironmentError(
@@ -122,6 +145,15 @@ bool is_launched() {
   const char* mark = std::getenv(mark_variable);
   if (rank != nullptr && mark != nullptr && std::strcmp(rank, "0") == 0) unlink(mark);
   return rank != nullptr;
+}
+
+void tell_of_mpirun(int status) {
+  const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  const bool is_plain = rank != nullptr && std::strcmp(rank, "0") == 0 && std::getenv(mark_variable) == nullptr;
+  if (status == 0 || !is_plain) return;
+  core::write_line(stderr,
+                   "orbweaver: lines of mpirun may follow that say no more: `orbweaver --ranks N ...`, or "
+                   "`mpirun --quiet`, leaves them out (docs/terminal.md)");
 }
 
 }  // namespace orbweaver::drivers

@@ -20,4 +20,8 @@ struct Launch {
 /// True in a process that mpirun has started. The first of `launch` says so.
 [[nodiscard]] bool is_launched();
 
+/// On the first rank of an mpirun that `launch` has not started, before the process ends with a status other than 0:
+/// mpirun then says much that hides the message, and how to leave that out.
+void tell_of_mpirun(int status);
+
 }  // namespace orbweaver::drivers

@@ -114,9 +114,12 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, as on a full disk, and the program says so
   orbweaver::core::prefer_fitting_blas_kernels(argv);
   orbweaver::core::pause_point("begin");
+  int status = 0;
   try {
-    return run({argv + 1, argv + argc});
+    status = run({argv + 1, argv + argc});
   } catch (...) {
-    return orbweaver::drivers::report_failure(std::current_exception());
+    status = orbweaver::drivers::report_failure(std::current_exception());
   }
+  orbweaver::drivers::tell_of_mpirun(status);
+  return status;
 }

@@ -1,11 +1,10 @@
-#include <algorithm>
-#include <cctype>
+#include <chrono>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,6 +12,7 @@
 #include "common_options.hpp"
 #include "duration.hpp"
 #include "failure.hpp"
+#include "orbweaver/core/command_line.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/mpi/communicator.hpp"
@@ -42,36 +42,28 @@ struct SurveyOptions {
   std::string progress = "auto";
 };
 
-/// As a shell wants it, which would take brackets and blanks for its own.
-std::string shell_word(const std::string& text) {
-  const bool is_plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_./=:+,-@%").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain && !text.empty()) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
-std::string how_to_go_on(const SurveyOptions& options) {
+std::string how_to_go_on(const SurveyOptions& options, const Invocation& invocation) {
   const std::string signal = stop_signal();
-  std::string settings;
-  for (const std::string& setting : options.scene.overrides) settings += " --set " + shell_word(setting);
-  return fmt::format(
-      "stopped{}; the survey goes on, on any number of ranks, with\n  orbweaver survey {}{} -o {} --resume\n",
-      signal.empty() ? "" : " by " + signal, shell_word(options.scene.file.string()), settings,
-      shell_word(options.directory.string()));
+  std::vector<std::string> words{"survey", options.scene.file.string()};
+  for (const std::string& setting : options.scene.overrides) words.insert(words.end(), {"--set", setting});
+  words.insert(words.end(), {"-o", options.directory.string(), "--resume"});
+  if (!invocation.petsc_options.empty()) words.emplace_back("--");
+  words.insert(words.end(), invocation.petsc_options.begin(), invocation.petsc_options.end());
+  return fmt::format("stopped{}; the survey goes on, on any number of ranks, with\n  {}\n",
+                     signal.empty() ? "" : " by " + signal, core::command_line(words));
 }
 
-int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
+int survey_on(const core::Communicator& comm, const SurveyOptions& options, const Invocation& invocation,
+              std::chrono::steady_clock::time_point began) {
   scene::Scene scene;
   std::shared_ptr<const systems::System> system;
   survey::DirectoryStatus status = survey::DirectoryStatus::none;
   survey::RunOptions run_options{display_of(options.log, options.progress), options.resume};
+  run_options.began = began;
   agree(comm, [&] {
     scene = options.scene.load();
     system = scene::bound_system(scene.system);
-    survey::require_memory(survey::expected_work(scene, *system), survey::usable_memory());
+    survey::require_memory(survey::expected_work(scene, *system));
     if (options.walltime) run_options.walltime = seconds_of(*options.walltime);
   });
   require_same_input(comm, scene.text);
@@ -85,8 +77,11 @@ int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
   if (status == survey::DirectoryStatus::finished || status == survey::DirectoryStatus::finished_with_failures) {
     const bool failed = status == survey::DirectoryStatus::finished_with_failures;
     if (comm.is_root())
-      print_result(fmt::format("{} holds this survey, finished{}: nothing to do\n", options.directory.string(),
-                               failed ? ", with failures (orbweaver show says which)" : ""));
+      print_result(
+          fmt::format("{} holds this survey, finished{}: nothing to do\n", options.directory.string(),
+                      failed ? fmt::format(", with failures ({} says which)",
+                                           core::archive_command_line({"show", options.directory.string(), "findings"}))
+                             : ""));
     return static_cast<int>(failed ? core::ExitStatus::goal_missed : core::ExitStatus::done);
   }
   const survey::Summary summary =
@@ -95,13 +90,14 @@ int survey_on(const core::Communicator& comm, const SurveyOptions& options) {
     if (!comm.is_root()) return;
     ResultStream out;
     report::print(out, summary, options.log.verbose ? report::Detail::all : report::Detail::brief);
-    if (summary.stopped_early) out << how_to_go_on(options);
+    if (summary.stopped_early) out << how_to_go_on(options, invocation);
     out.finish();
   });
   return static_cast<int>(status_of(summary));
 }
 
 int run(const SurveyOptions& options, const Invocation& invocation) {
+  const auto began = std::chrono::steady_clock::now();
   stop_on_signals();
   const core::Session session(invocation.petsc_options);
   const core::Communicator comm;
@@ -109,7 +105,7 @@ int run(const SurveyOptions& options, const Invocation& invocation) {
   core::pause_point("begin survey");
   try {
     return run_on_ranks(comm, [&] {
-      const int status = survey_on(comm, options);
+      const int status = survey_on(comm, options, invocation, began);
       warn_of_unused_options(session, comm);
       return status;
     });

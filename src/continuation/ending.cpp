@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/text.hpp"
+
 namespace orbweaver::continuation {
 
 std::string_view name_of(EndReason reason) {
@@ -28,7 +30,7 @@ std::string_view name_of(EndReason reason) {
 std::string Ending::text() const {
   std::string text(name_of(reason));
   if (!object.empty()) text += " " + object;
-  if (!detail.empty()) text += fmt::format(" ({})", detail);
+  if (!detail.empty()) text += fmt::format(" ({})", core::recordable(detail));  // a field that throws has its own words
   return text;
 }
 

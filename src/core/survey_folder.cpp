@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/command_line.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::core {
@@ -15,11 +16,13 @@ std::filesystem::path atlas_named(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path, ignored)) return path;
   if (std::filesystem::exists(std::filesystem::symlink_status(atlas_in(path), ignored))) return atlas_in(path);
   if (std::filesystem::is_directory(segments_in(path), ignored))
-    throw InputError(
-        fmt::format("'{0}' is the folder of a survey that has not come to its end, and has no atlas.h5 yet. Go on with "
-                    "it by `orbweaver survey SCENE -o {0} --resume`, or make an archive of what it has found by "
-                    "`orbweaver consolidate {0}`.",
-                    path.string()));
+    throw InputError(fmt::format(
+        "'{}' is the folder of a survey that has not come to its end, and has no atlas.h5 yet. Go on with it by "
+        "`orbweaver survey SCENE -o {} --resume`, with the scene and settings that it was begun with, or make an "
+        "archive "
+        "of what it has found by `{}`{}.",
+        path.string(), shell_word(path.string()), archive_command_line({"consolidate", path.string()}),
+        names_plugins_in_commands() ? "" : ", with `--plugin FILE` if its scene has a plugin"));
   return path;
 }
 

@@ -83,8 +83,8 @@ char32_t code_point(std::string_view character) {
 bool is_control(std::string_view character) {
   const char32_t point = code_point(character);
   const auto within = [point](char32_t first, char32_t last) { return point >= first && point <= last; };
-  return within(0, 0x1F) || within(0x7F, 0x9F) || point == 0x061C || within(0x200E, 0x200F) ||
-         within(0x2028, 0x202E) || within(0x2066, 0x2069);
+  return within(0, 0x1F) || within(0x7F, 0x9F) || point == 0x061C || within(0x200E, 0x200F) || within(0x2028, 0x202E) ||
+         within(0x2066, 0x2069);
 }
 
 std::size_t first_untextual(std::string_view text) {
@@ -99,6 +99,11 @@ std::size_t first_untextual(std::string_view text) {
 std::string printable(std::string_view text) { return escaped(text, ""); }
 
 std::string printable_lines(std::string_view text) { return escaped(text, "\n\t"); }
+
+std::string recordable(std::string_view text) {
+  constexpr std::size_t most = 2000;
+  return shortened(printable_lines(text), most);
+}
 
 std::string shortened(std::string text, std::size_t most) {
   constexpr std::string_view dots = "...";

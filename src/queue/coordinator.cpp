@@ -25,7 +25,7 @@ Coordinator::Coordinator(const core::Communicator& comm, const Options& options,
       _own(options, executor, *this),
       _schedule(options, _works ? comm.size() : comm.size() - 1),
       _round(comm.size()),
-      _deadlines(options.task_seconds, comm.size()),
+      _deadlines(options.task_seconds, options.stop_seconds, comm.size()),
       _task_of(static_cast<std::size_t>(comm.size())),
       _greeted(static_cast<std::size_t>(comm.size()), false) {}
 
@@ -78,13 +78,14 @@ bool Coordinator::pass_on_stop() {
   if (_stopping || !stop_requested()) return false;
   _stopping = true;
   _channel.send_to_workers(Stop{});
+  _deadlines.stop();
   return true;
 }
 
 bool Coordinator::check_deadlines() {
-  if (const auto rank = _deadlines.unresponsive()) {
+  if (const auto found = _deadlines.unresponsive()) {
     // It cannot be asked to take part in an orderly end.
-    core::log_error(unresponsive_text(_task_of[static_cast<std::size_t>(*rank)], *rank, _options.task_seconds));
+    core::log_error(unresponsive_text(task_text(_task_of[static_cast<std::size_t>(found->rank)], found->rank), *found));
     MPI_Abort(_comm.get(), static_cast<int>(core::ExitStatus::environment_failed));
   }
   const std::vector<int> workers = _deadlines.overdue();
@@ -233,6 +234,7 @@ void Coordinator::part(const std::string& error) {
   const RunSummary now = _ledger.numbers();
   _channel.send_to_workers(Shutdown{error, now.done, now.failed, now.waiting, now.stopped, now.stopped_early,
                                     now.flushes, now.rows, now.seconds});
+  _deadlines.stop();
   Backoff backoff(_options);
   int goodbyes = 0;
   while (goodbyes < _comm.size() - 1 || _channel.sending()) {

@@ -4,6 +4,7 @@
 
 #include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
+#include "orbweaver/core/text.hpp"
 
 namespace orbweaver::queue {
 
@@ -11,7 +12,7 @@ std::string current_exception_text() {
   try {
     throw;
   } catch (const std::exception& error) {
-    const std::string text = error.what();
+    const std::string text = core::printable_lines(error.what());  // a plugin's may be of any bytes
     return text.empty() ? "an exception without a message" : text;
   } catch (...) {
     return "an exception that is no std::exception";
@@ -33,17 +34,23 @@ Execution execute_guarded(Executor& executor, const Task& task, TaskContext& con
     outcome.reason = current_exception_text();
   }
   outcome.key = task.key;
+  outcome.reason = core::recordable(outcome.reason);
   if (outcome.failed && outcome.reason.empty()) outcome.reason = "the executor gave no reason";
   return execution;
 }
 
-std::string unresponsive_text(const std::string& key, int rank, double task_seconds) {
+std::string unresponsive_text(const std::string& work, const Deadlines::Unresponsive& found) {
+  const std::string late =
+      found.stopping
+          ? fmt::format("{} was asked to stop and has not come to an end of a step for {:g} s", work, found.seconds)
+          : fmt::format("{} was to end after {:g} s and has not done so in the same time again", work, found.seconds);
   return fmt::format(
-      "task {} on rank {} was to end after {:g} s and has not done so in the same time again; ending the program: what "
-      "the "
-      "last flush wrote is safe, and a run that goes on from it begins with that task again",
-      key, rank, task_seconds);
+      "{} (does the system's field return?); ending the program: what the last flush wrote is safe, and a run that "
+      "goes on from it begins with that work again",
+      late);
 }
+
+std::string task_text(const std::string& key, int rank) { return fmt::format("task {} on rank {}", key, rank); }
 
 void log_task(const Task& task, const TaskOutcome& outcome, double seconds, double silence) {
   if (!core::logs_debug()) return;

@@ -10,7 +10,7 @@ OwnWork::OwnWork(const Options& options, Executor& executor, Duties& duties)
     : _executor(executor),
       _duties(duties),
       _progress_interval(options.progress_seconds),
-      _watchdog(options.task_seconds) {}
+      _watchdog(options.task_seconds, options.stop_seconds) {}
 
 OwnWork::Done OwnWork::execute(const Task& task) {
   _key = task.key;
@@ -20,7 +20,7 @@ OwnWork::Done OwnWork::execute(const Task& task) {
   _flushed = false;
   _flushed_state = task.state;
   _times.begin();
-  _watchdog.began(_key);
+  _watchdog.began(task_text(_key, 0));
   auto [outcome, given_up] = execute_guarded(_executor, task, *this, [this] { return asked_to_give_up(); });
   if (given_up) {
     _executor.take_back_rows(_flushed);

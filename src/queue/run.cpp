@@ -18,6 +18,7 @@ void require_valid(const Options& options) {
   core::require(options.progress_seconds >= 0, "progress_seconds must be 0 or more");
   core::require(options.root_works_up_to >= 0, "root_works_up_to must be 0 or more");
   core::require(options.task_seconds >= 0, "task_seconds must be 0 or more");
+  core::require(options.stop_seconds >= 0, "stop_seconds must be 0 or more");
   core::require(options.tick_seconds >= 0, "tick_seconds must be 0 or more");
   core::require(options.shortest_sleep.count() > 0, "shortest_sleep must be more than 0, or a waiting rank would spin");
   core::require(options.longest_sleep >= options.shortest_sleep, "longest_sleep must not be less than shortest_sleep");

@@ -9,19 +9,23 @@
 
 namespace orbweaver::queue {
 
-/// Minds Options::task_seconds for the tasks of rank 0, which nobody else watches: a thread that ends the program when
-/// a task neither ends nor reports. Without a limit there is no thread.
+/// Minds Options::task_seconds and stop_seconds for work of this process that nobody else watches, as the tasks of rank
+/// 0: a thread that ends the program with status 3 when the work neither ends nor reports. It begins with the first
+/// work, and only where there is a limit.
 class Watchdog {
  public:
-  explicit Watchdog(double task_seconds);
+  Watchdog(double task_seconds, double stop_seconds);
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
   Watchdog(Watchdog&&) = delete;
   Watchdog& operator=(Watchdog&&) = delete;
   ~Watchdog();
 
-  void began(const std::string& key);
+  /// `work` is what messages call it.
+  void began(const std::string& work);
   void ended();
+  /// Of work that may go on after a stop was asked for.
+  void alive();
   void pause();
   void resume();
   /// Whether the time of the task is over.
@@ -30,11 +34,11 @@ class Watchdog {
  private:
   void watch();
 
-  double _seconds;
+  double _interval;  // s, between two looks; 0: there is no limit
   std::mutex _mutex;
   std::condition_variable _woken;
   bool _over = false;
-  std::string _key;
+  std::string _work;
   Deadlines _deadlines;
   std::thread _thread;
 };

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "orbweaver/core/command_line.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/symmetry/isotropy_text.hpp"
@@ -67,8 +68,8 @@ StoredFamily StoredFamily::named(const archive::Archive& atlas, const std::strin
   const std::vector<std::string>& names = atlas.families().texts("name");
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw core::InputError(fmt::format("{} has no family `{}`; `orbweaver show {} families` lists them",
-                                       atlas.path().string(), name, atlas.path().string()));
+    throw core::InputError(fmt::format("{} has no family `{}`; `{}` lists them", atlas.path().string(), name,
+                                       core::archive_command_line({"show", atlas.path().string(), "families"})));
   return {atlas, static_cast<std::size_t>(found - names.begin())};
 }
 

@@ -4,14 +4,16 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/command_line.hpp"
+
 namespace orbweaver::report {
 
 std::size_t family_row(const archive::Archive& atlas, const std::string& name) {
   const std::vector<std::string>& names = atlas.families().texts("name");
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw core::InputError(
-        fmt::format("no family `{}` in {}: `orbweaver show ATLAS families` lists them", name, atlas.path().string()));
+    throw core::InputError(fmt::format("no family `{}` in {}: `{}` lists them", name, atlas.path().string(),
+                                       core::archive_command_line({"show", atlas.path().string(), "families"})));
   return static_cast<std::size_t>(found - names.begin());
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "orbweaver/core/command_line.hpp"
 #include "orbweaver/core/styled.hpp"
 
 namespace orbweaver::report {
@@ -82,7 +83,7 @@ void print_counts(std::ostream& out, const survey::Summary& summary) {
 /// What does not add up, and how much the limits cut; failed tasks have lines of their own.
 void print_findings(std::ostream& out, const survey::Summary& summary, Detail detail) {
   if (!summary.archived) return;
-  const std::string show = fmt::format("orbweaver show {} findings", summary.atlas.string());
+  const std::string show = core::archive_command_line({"show", summary.atlas.string(), "findings"});
   const auto contradictions = texts_of(summary, survey::Severity::contradiction);
   const auto undecided = texts_of(summary, survey::Severity::undecided);
   const std::string counts[] = {fmt::format("{} contradictions", contradictions.size()),
@@ -102,7 +103,7 @@ void print_notes(std::ostream& out, const survey::Summary& summary, Detail detai
     print_lines(out, summary.passed_over, "note", Style::heading, listing(detail, 0, ""));
   else if (!summary.passed_over.empty())
     out << Styled{Style::faint, fmt::format("passed over at {} equilibria: dips of the sweep that begin no family "
-                                            "(orbweaver sweep lists them)",
+                                            "(orbweaver sweep SCENE lists them)",
                                             summary.passed_over.size())}
         << '\n';
 }
@@ -118,8 +119,8 @@ void print_families(std::ostream& out, const survey::Summary& summary, Detail de
   for (std::size_t n = 0; n < listed; ++n)
     out << Styled{summary.families[n].failed ? Style::bad : Style::plain, line_of(summary.families[n], width)} << '\n';
   if (listed < summary.families.size())
-    out << fmt::format("... and {} more: orbweaver show {} families\n", summary.families.size() - listed,
-                       summary.atlas.string());
+    out << fmt::format("... and {} more: {}\n", summary.families.size() - listed,
+                       core::archive_command_line({"show", summary.atlas.string(), "families"}));
 }
 
 }  // namespace
@@ -137,8 +138,8 @@ void print(std::ostream& out, const survey::Summary& summary, Detail detail) {
   if (summary.archived)
     out << fmt::format("archive: {}\n", summary.atlas.string());
   else
-    out << fmt::format("archive: not written (orbweaver consolidate {} makes it of what there is)\n",
-                       summary.atlas.parent_path().string());
+    out << fmt::format("archive: not written ({} makes it of what there is)\n",
+                       core::archive_command_line({"consolidate", summary.atlas.parent_path().string()}));
 }
 
 std::string to_text(const survey::Summary& summary, Detail detail) {

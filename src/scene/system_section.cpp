@@ -151,7 +151,7 @@ const systems::Plugin& plugin_of(const Field& file, const Field* source,
   }
   if (found == nullptr)
     file.fail("the plugin that brings the system", "none, for a stored scene does not hold it",
-              "give it by `--plugin FILE`");
+              "give it by `--plugin FILE`, the file that `orbweaver build-system` made");
   if (!wanted.empty() && found->source != wanted)
     source->fail(fmt::format("a plugin of this source, {}", wanted),
                  fmt::format("'{}' of source {}", found->file.string(), found->source),

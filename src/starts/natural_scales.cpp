@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 
 #include "drive_averaged.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/numerics/eigenvalues.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
@@ -256,7 +258,14 @@ class LocalScales {
     return least;
   }
 
+  /// The largest singular value.
+  static double norm(const MatrixXd& matrix) {
+    const MatrixXd squares = matrix.transpose() * matrix;
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<MatrixXd>(squares, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
+  }
+
   [[nodiscard]] bool departure(Index i, double moved, const MatrixXd& balanced, const std::vector<Index>& label) const {
+    core::interruption_point();
     VectorXd z = _point;
     z(i) = _point(i) + 0.5 * moved;
     const std::optional<MatrixXd> middle = jacobian_at(z);
@@ -271,10 +280,12 @@ class LocalScales {
         if (label[static_cast<std::size_t>(l)] == component) members.push_back(l);
       if (members.empty()) continue;
       const MatrixXd block = change(members, members);
-      const MatrixXd linear = balanced(members, members);
-      if (block.norm() < linear.norm() / std::sqrt(static_cast<double>(members.size()))) continue;
-      const auto norm = [](const MatrixXd& matrix) { return Eigen::JacobiSVD<MatrixXd>(matrix).singularValues()(0); };
-      if (norm(block) >= std::max(norm(linear), _least_rate)) return true;
+      if (!_linear_norms.contains(component)) _linear_norms[component] = norm(balanced(members, members));
+      const double linear = std::max(_linear_norms[component], _least_rate);
+      // The sum of squares bounds the norm from both sides, and decides far from where they are equal.
+      const double bound = block.norm();
+      if (bound < linear) continue;
+      if (bound >= linear * std::sqrt(static_cast<double>(members.size())) || norm(block) >= linear) return true;
     }
     return false;
   }
@@ -285,6 +296,7 @@ class LocalScales {
   VectorXd _log;
   double _least_rate = 0.0;
   bool _invertible = false;
+  mutable std::map<Index, double> _linear_norms;  // of the components of the linear field, by the first of each
 };
 
 double nearest_power(double log) { return std::exp2(std::round(log)); }

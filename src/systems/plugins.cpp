@@ -8,6 +8,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "orbweaver/core/command_line.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
 #include "orbweaver/core/input_file.hpp"
@@ -92,6 +93,7 @@ const Plugin& load_plugin(const std::filesystem::path& file) {
   } catch (const core::InputError& error) {
     refuse(file, error.what());
   }
+  core::name_plugin_in_commands(path);
   return plugins().emplace_back(std::move(plugin));
 }
 

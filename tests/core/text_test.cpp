@@ -27,9 +27,17 @@ TEST(Text, WhatIsNoCharacterIsFoundWhereItBegins) {
 TEST(Printable, EscapesControlCharactersAndBytes) {
   EXPECT_EQ(printable("a\x1b[31m\n\r\t\x7f\0b"s), "a\\x1b[31m\\n\\r\\t\\x7f\\x00b");
   EXPECT_EQ(printable("\xC2\x9B \xFF\xC3\xBC"), "\\xc2\\x9b \\xff\xC3\xBC");
-  EXPECT_EQ(printable("a\xE2\x80\xAE" "b\xE2\x81\xA6\xE2\x80\xA8\xD8\x9C\xE2\x82\xAC\xE2\x80\x93"),
+  EXPECT_EQ(printable("a\xE2\x80\xAE"
+                      "b\xE2\x81\xA6\xE2\x80\xA8\xD8\x9C\xE2\x82\xAC\xE2\x80\x93"),
             "a\\xe2\\x80\\xaeb\\xe2\\x81\\xa6\\xe2\\x80\\xa8\\xd8\\x9c\xE2\x82\xAC\xE2\x80\x93");
   EXPECT_EQ(printable_lines("a\x1b\n\tb\r"), "a\\x1b\n\tb\\r");
+}
+
+TEST(Recordable, IsPrintableAndOfBoundedLength) {
+  EXPECT_EQ(recordable("Kr\xF6mmung\n"), "Kr\\xf6mmung\n");
+  const std::string longest = recordable(std::string(10'000, '\x1b'));
+  EXPECT_LE(longest.size(), 2000U);
+  EXPECT_EQ(recordable(longest), longest);
 }
 
 TEST(CodePoint, OfEveryLength) {

@@ -51,6 +51,20 @@ expect_refusal() {
   grep -qF "$text" refused.txt || fail "'$*' does not say '$text': $(cat refused.txt)"
 }
 expect_refusal "give it by \`--plugin FILE\`" orbweaver verify out/atlas.h5
+# Hints are whole commands, which end as they should when they are run as they stand: consolidate, and how the survey goes on.
+status=0
+orbweaver survey two_masses.yaml -o 'out stopped' --walltime 0.01 --set continuation.step=0.001 -q >stopped.txt 2>&1 || status=$?
+((status == 4)) || fail "a survey without time ends with $status: $(cat stopped.txt)"
+status=0
+bash -c "$(sed -n 's/^archive: not written (\(.*\) makes it of what there is)$/\1/p' stopped.txt)" >consolidated.txt 2>&1 || status=$?
+((status == 4)) || fail "the hint of consolidate ends with $status: $(cat stopped.txt consolidated.txt)"
+expect_refusal "orbweaver show 'out stopped/atlas.h5' families --plugin " orbweaver show 'out stopped' orbits --family none --plugin two_masses.so
+rm 'out stopped/atlas.h5'
+expect_refusal "orbweaver consolidate 'out stopped' --plugin " orbweaver show 'out stopped' --plugin two_masses.so
+status=0
+bash -c "$(sed -n 's/^  \(orbweaver survey .*\)$/\1/p' stopped.txt) --walltime 0.01 -q" >resumed.txt 2>&1 || status=$?
+((status == 4)) || fail "the hint to go on ends with $status: $(cat stopped.txt resumed.txt)"
+
 # As if built from another source.
 hash=$(strings two_masses.so | grep -xE '[0-9a-f]{40}')
 LC_ALL=C sed "s/$hash/${hash//[0-9]/0}/" two_masses.so >other.so

@@ -113,6 +113,16 @@ class Watch final : public queue::Observer {
   }
 };
 
+TEST(Run, WhatATaskThrowsIsKeptAsItCanBeShown) {
+  const Communicator comm;
+  Work work([](const Task&, TaskContext&) -> TaskOutcome { throw std::runtime_error("Kr\xF6mmung"); });
+  Flush flush;
+  queue::Observer nobody;
+  const auto summary = queue::run(comm, {}, tasks(1), work, nobody, flush);
+  ASSERT_EQ(summary.failed, 1u);
+  if (comm.is_root()) EXPECT_EQ(summary.failures[0].reason, "Kr\\xf6mmung");
+}
+
 TEST(Run, OutcomesAreThoseOfTheReferenceWhateverTheNumberOfRanks) {
   const Communicator comm;
   Work work(do_forest);

@@ -55,7 +55,7 @@ touch locked && chmod 0 locked
 # 8 million unknowns take more than the limit above leaves.
 for command in check "survey -o out"; do
   [ "$sanitized" = ON ] && break
-  refused "continuation.cutoff: expected orbits that fit into the memory at hand, 0.954 GiB" $command "$scene" \
+  refused "continuation.cutoff: expected orbits that fit into the memory at hand, 0.545 GiB beside the program" $command "$scene" \
     --set 'continuation.cutoff=[1000000, 1000000]'
 done
 yes '[1, 2],' | head -c 3000000 > long.yaml

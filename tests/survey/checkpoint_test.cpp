@@ -33,6 +33,22 @@ queue::TaskOutcome outcome(const std::string& key, std::vector<queue::Task> chil
   return done;
 }
 
+// As programs wrote them that kept the words of a field as it threw them.
+TEST(Checkpoint, AJournalsReasonsOfAnyBytesAreReadAsTheyCanBeShown) {
+  const auto folder = test::fresh_folder("journal_bytes");
+  EndedTask sweep{task("sweep.0000"), outcome("sweep.0000")};
+  sweep.outcome.failed = true;
+  sweep.outcome.reason = "Kr\xf6mmung";
+  BranchOutcome followed;
+  followed.end = {continuation::EndReason::failure, "Kr\xf6mmung"};
+  EndedTask branch{task("0000.0000", TaskKind::branch), outcome("0000.0000")};
+  branch.outcome.payload = pack(followed);
+  const JournalFile file = write_journal(folder, 1, {sweep, branch});
+  const std::vector<EndedTask> read = read_journal(folder, file);
+  EXPECT_EQ(read[0].outcome.reason, R"(Kr\xf6mmung)");
+  EXPECT_EQ(unpack_branch_outcome(read[1].outcome.payload).end.detail, R"(Kr\xf6mmung)");
+}
+
 TEST(Checkpoint, ComesBackWhole) {
   const auto folder = test::fresh_folder("checkpoint");
   Checkpoint written;

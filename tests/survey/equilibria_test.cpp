@@ -157,7 +157,7 @@ TEST(Equilibria, HaveTheSameBytesOnAllRanksAndResumed) {
   const auto system = scene::bound_system(scene.system);
   const auto folder = test::fresh_folder(fmt::format("resumed{}", comm.size()), comm.get());
   survey::RunOptions options;
-  options.walltime = 0.03;
+  options.walltime = 0.1;
   (void)survey::run_survey(comm, scene, system, folder, options);
   const survey::Summary resumed = survey::run_survey(comm, scene, system, folder, {survey::Display::none, true});
   EXPECT_FALSE(resumed.stopped_early);

@@ -146,6 +146,23 @@ TEST_F(Failures, AFamilyWhoseFieldThrowsFailsAlone) {
   expect_up_down_alone_failed(summary, StartsWith("failure (the table of forces ends here)"));
 }
 
+// Latin-1, control characters, and longer than an archive's text may be.
+TEST_F(Failures, WordsOfAnyBytesAreKeptAsTheyCanBeShown) {
+  const std::string words = "Kr\xf6mmung " + std::string(10'000, '\x1b');
+  expect_up_down_alone_failed(run("bytes",
+                                  [&](std::size_t nodes, double, double th2, double&) {
+                                    if (is_spoilt(nodes, th2)) throw std::runtime_error(words);
+                                  }),
+                              StartsWith(R"(failure (Kr\xf6mmung \x1b)"));
+  const survey::Summary summary = run("sweep_bytes", [&](std::size_t nodes, double th1, double th2, double&) {
+    const bool at_up_down = std::abs(th1 - std::numbers::pi) < 1e-9 && std::abs(th2) < 1e-9;
+    if (nodes == SpoiltPendulum::linearization && at_up_down) throw std::runtime_error(words);
+  });
+  EXPECT_EQ(summary.failures, 1U);
+  if (!shared->is_root()) return;
+  EXPECT_THAT(summary.failed_tasks, ElementsAre(StartsWith(R"(sweep.0002: Kr\xf6mmung)")));
+}
+
 TEST_F(Failures, ASweepThatThrowsCostsItsFamiliesOnly) {
   const survey::Summary summary = run("sweep", [](std::size_t nodes, double th1, double th2, double&) {
     const bool at_up_down = std::abs(th1 - std::numbers::pi) < 1e-9 && std::abs(th2) < 1e-9;

@@ -369,7 +369,7 @@ TEST(Loci, HaveTheSameBytesOnAllRanksAndResumed) {
   const auto system = scene::bound_system(scene.system);
   const auto folder = test::fresh_folder(fmt::format("resumed{}", comm.size()), comm.get());
   survey::RunOptions options;
-  options.walltime = 0.15;
+  options.walltime = 0.2;
   (void)survey::run_survey(comm, scene, system, folder, options);
   const survey::Summary resumed = survey::run_survey(comm, scene, system, folder, {survey::Display::none, true});
   EXPECT_FALSE(resumed.stopped_early);

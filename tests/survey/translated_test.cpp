@@ -125,7 +125,6 @@ class Changed final : public test::DelegatingSystem {
 
 TEST(Resumed, AWrongModelIsRefused) {
   const core::Communicator comm;
-  // Long enough for a look at the clock, which comes ten times a second.
   const scene::Scene scene = test::quick_scene({"limits.period=20", "continuation.step=0.3deg", "limits.steps=2000"});
   const auto system = systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects);
   const auto folder = test::fresh_folder("changed" + std::to_string(comm.size()), comm.get());

@@ -55,14 +55,13 @@ TEST_F(TreeRounds, AnArrivalAtACrossingThatIsDroppedCountsAtTheNextBest) {
 
 TEST_F(TreeRounds, WhatWasLeftOutIsAskedAgainWhenMoreIsKnown) {
   queue::Observer display;
-  TimeLimit time(1e9);
   CheckpointKeeper keeper("nowhere", {});
   const core::Communicator alone(MPI_COMM_SELF);
   const archive::Header header;
   archive::Records rows;
   PayloadStore store("nowhere");
   const SegmentFlusher flusher(alone, "nowhere", header, rows, {}, store);
-  TreeRecorder recorder({display, time, keeper, flusher}, tree, {});
+  TreeRecorder recorder({display, keeper, flusher}, tree, {});
   add({ended(base_work(), EndReason::period_limit, 5, 12), located(o), located(p), located(q),
        arrived(work_from(p, 0), 16, q, 0)});
   const queue::Task start = task_of(StartWork{work_from(q, 0)});

@@ -24,6 +24,7 @@ broken_off_test(slurm system 300 slurm.sh -- ${broken})
 # What Slurm's own scheduler says of the script, where Slurm is installed.
 orbweaver_add_ctest(system.slurm.sbatch 1 system 60 "${CMAKE_CURRENT_LIST_DIR}/sbatch.sh" "${PROJECT_SOURCE_DIR}/docs/slurm.sh")
 set_tests_properties(system.slurm.sbatch PROPERTIES SKIP_RETURN_CODE 77)
+broken_off_test(hung system 300 hung.sh -- ${broken})
 broken_off_test(early_signals system 120 early_signals.sh -- ${broken})
 broken_off_test(flips system 300 flips.sh -- 8 ${broken})
 broken_off_test(many_flips "system;long" 3600 flips.sh -- 200 ${broken})

@@ -40,7 +40,7 @@ wait_from_first_line() {
   sleep "$1"
 }
 
-for signal in TERM USR1 INT; do
+for signal in TERM USR1 INT HUP; do
   # Before MPI starts, and when it has, the survey has not begun, however fast the machine.
   early=0
   for place in "begin" "begin survey"; do

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ranks.sh PROGRAM SCENE: `--ranks` starts ranks by mpirun. A status other than 0 is followed by nothing of mpirun's, a signal reaches the
-# ranks, and what has ended a rank is told.
+# ranks by its own name, and what has ended a rank is told.
 set -euo pipefail
 program=$1 scene=$2
 quick=(--set limits.period=8.5 --set starts.sweep.step=0.1 --set survey.depth=0)
@@ -16,6 +16,12 @@ has missed.txt '1 failed'
 lacks missed.txt mpirun
 lacks missed.txt -----
 
+status=0
+mpirun -n 2 "$program" survey "$scene" -o out --set nothing=1 >plain.txt 2>&1 || status=$?
+((status == 2)) || fail "under mpirun: status $status: $(tail -3 plain.txt)"
+has plain.txt 'orbweaver: lines of mpirun may follow that say no more: `orbweaver --ranks N ...`'
+has plain.txt -----
+
 # Signals: SIGINT stops a survey so that it can be resumed; a rank that is killed is told.
 survey_in_background() {
   rm -rf out background.txt  # the one before says the same
@@ -27,13 +33,36 @@ survey_in_background() {
   done
   fail "no progress: $(cat background.txt)"
 }
-survey_in_background
+for signal in INT HUP; do
+  survey_in_background
+  status=0
+  kill -$signal $launcher
+  wait $launcher || status=$?
+  ((status == 4)) || fail "SIG$signal: status $status: $(tail -3 background.txt)"
+  has background.txt "stopped by SIG$signal; the survey goes on"
+  lacks background.txt mpirun
+done
+# The second SIGINT ends all at once, with the status of the signal. The ranks stand still meanwhile, so that the first does not.
+rm -rf out background.txt
+ORBWEAVER_PAUSE_AT="write segment-000001.h5" ORBWEAVER_PAUSE_SECONDS=60 "$program" --ranks 2 survey "$scene" -o out >background.txt 2>&1 &
+launcher=$!
+for ((n = 0; n < 600; ++n)); do
+  ! grep -qs 'paused at' background.txt || break
+  sleep 0.1
+done
 status=0
 kill -INT $launcher
+sleep 1
+kill -INT $launcher
+SECONDS=0
 wait $launcher || status=$?
-((status == 4)) || fail "SIGINT: status $status: $(tail -3 background.txt)"
-has background.txt 'the survey goes on'
-lacks background.txt mpirun
+((status == 130)) || fail "two SIGINT: status $status: $(tail -3 background.txt)"
+((SECONDS < 10)) || fail "two SIGINT: $SECONDS s"
+for ((n = 0; n < 100; ++n)); do
+  pgrep -f -- "^$program survey $scene -o out\$" >/dev/null || break
+  sleep 0.1
+done
+((n < 100)) || fail "two SIGINT: a rank goes on"
 survey_in_background
 status=0
 kill -KILL "$(pgrep -P "$(pgrep -P $launcher)" | tail -1)"

@@ -15,7 +15,7 @@ expect_stopped() {
 }
 
 place="write segment-000002.h5"
-for case in "TERM rank0" "USR1 mpirun" "USR1 worker" "INT rank0"; do
+for case in "TERM rank0" "USR1 mpirun" "USR1 worker" "INT rank0" "HUP rank0"; do
   read -r signal whom <<< "$case"
   rm -rf "$folder/stopped"
   : > "$folder/log"

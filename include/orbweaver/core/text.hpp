@@ -27,6 +27,10 @@ namespace orbweaver::core {
 /// The same, with the breaks between lines and the tabs left as they are: for whole messages.
 [[nodiscard]] std::string printable_lines(std::string_view text);
 
+/// What a failure says, of any bytes and length, as journals and archives keep it: printable_lines, shortened to 2000
+/// bytes, of which an archive holds 4096 with what stands around them. A text made so stays as it is.
+[[nodiscard]] std::string recordable(std::string_view text);
+
 /// The text, or as many of its first whole characters as fit into `most` bytes with `...` behind them. `text` is UTF-8.
 [[nodiscard]] std::string shortened(std::string text, std::size_t most);
 

@@ -29,6 +29,9 @@ struct Options {
   /// run goes on with the others and ends as stopped early. If it has not ended after the same time again, the program
   /// ends on all ranks with exit status 3. 0: no limit.
   double task_seconds = 0.0;
+  /// Running tasks that have not ended so long (s, without flushes) after a stop was asked for end the program in the
+  /// same way. 0: no limit. Stops were obeyed within 4.3 s on a machine that was used thirtyfold (docs/reliability.md).
+  double stop_seconds = 10.0;
   /// With so many ranks or fewer, rank 0 does tasks too, between messages: it would only wait otherwise, half of the
   /// machine with two ranks. With more, a worker would wait for it longer than its help is worth.
   int root_works_up_to = 4;

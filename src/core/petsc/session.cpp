@@ -6,6 +6,7 @@
 #include <slepcsys.h>
 
 #include "mpi/open_mpi_defaults.hpp"
+#include "orbweaver/core/address_space.hpp"
 #include "orbweaver/core/petsc/check.hpp"
 #include "petsc_log.hpp"
 
@@ -40,9 +41,16 @@ Session::Session(const std::vector<std::string>& petsc_options) : _options(petsc
   int initialized = 0;
   check_mpi(MPI_Initialized(&initialized), "MPI_Initialized");
   if (initialized == 0) {
+    require_space_of_a_rank();
     set_open_mpi_defaults();
     check_mpi(MPI_Init(nullptr, nullptr), "MPI_Init");
     _owns_mpi = true;
+  }
+  try {
+    take_blas_buffer();
+  } catch (...) {
+    if (_owns_mpi) MPI_Finalize();
+    throw;
   }
   Arguments& a = arguments();
   // What lies in a folder must not change results, nor a pipe in it hold up the start.

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 
+#include "orbweaver/core/address_space.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::survey {
@@ -16,7 +16,7 @@ namespace {
 
 /// Per unknown, at K = 100000: 660 bytes (double pendulum) to 1090 (Van der Pol, whose loops have no symmetry).
 constexpr double bytes_an_unknown = 1100.0;
-/// Of the program without a family: libraries, MPI.
+/// Of the program without a family, resident: libraries, MPI. Its addresses are more (core::space_of_a_rank).
 constexpr double bytes_of_the_program = 45.0 * (1 << 20);
 /// Per unknown and orbit, at K = 100000: 1 us (double pendulum, planar problem) to 3.4 (Van der Pol).
 constexpr double least_seconds_an_unknown = 1e-6;
@@ -28,7 +28,8 @@ OrbitCost orbit_cost(int cutoff, int dimension) {
   OrbitCost cost;
   cost.cutoff = cutoff;
   cost.unknowns = (2.0 * cutoff + 1.0) * dimension;
-  cost.memory_bytes = bytes_of_the_program + bytes_an_unknown * cost.unknowns;
+  cost.working_bytes = bytes_an_unknown * cost.unknowns;
+  cost.memory_bytes = bytes_of_the_program + cost.working_bytes;
   cost.archive_bytes = sizeof(double) * cost.unknowns;
   cost.seconds_from = least_seconds_an_unknown * cost.unknowns;
   cost.seconds_to = most_seconds_an_unknown * cost.unknowns;
@@ -53,22 +54,21 @@ ExpectedWork expected_work(const scene::Scene& scene, const systems::System& sys
 }
 
 double usable_memory() {
-  double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  for (const auto kind : {RLIMIT_AS, RLIMIT_DATA}) {
-    rlimit limit{};
-    if (getrlimit(kind, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-      bytes = std::min(bytes, static_cast<double>(limit.rlim_cur));
-  }
-  return bytes;
+  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const core::AddressSpace allowed = core::space_allowed();
+  const core::AddressSpace taken = core::space_of_a_rank();
+  return std::min({machine - bytes_of_the_program, allowed.addresses - taken.addresses, allowed.data - taken.data});
 }
 
-void require_memory(const ExpectedWork& work, double memory_bytes) {
-  if (work.least.memory_bytes <= memory_bytes) return;
+void require_memory(const ExpectedWork& work) {
+  core::require_space_of_a_rank();
+  const double memory_bytes = usable_memory();
+  if (work.least.working_bytes <= memory_bytes) return;
   constexpr double gibibyte = 1 << 30;
   throw core::InputError(
-      fmt::format("continuation.cutoff: expected orbits that fit into the memory at hand, {:.3g} GiB, got at least {} "
-                  "harmonics, which take some {:.3g} GiB a rank; give a smaller least number",
-                  memory_bytes / gibibyte, work.least.cutoff, work.least.memory_bytes / gibibyte));
+      fmt::format("continuation.cutoff: expected orbits that fit into the memory at hand, {:.3g} GiB beside the "
+                  "program, got at least {} harmonics, which take some {:.3g} GiB a rank; give a smaller least number",
+                  memory_bytes / gibibyte, work.least.cutoff, work.least.working_bytes / gibibyte));
 }
 
 }  // namespace orbweaver::survey

@@ -16,7 +16,6 @@
 #include "display.hpp"
 #include "orbweaver/archive/file/folder_lock.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/interruption.hpp"
 #include "orbweaver/core/log/log.hpp"
 #include "orbweaver/core/mpi/collective.hpp"
 #include "orbweaver/core/petsc/check.hpp"
@@ -81,12 +80,16 @@ class Run {
         _team(team, _member),
         _executor(_store, _team),
         _display(options.display, Units(*_system), std::min(scene.limits.time, options.walltime)),
-        _time(scene.limits.time, options.walltime),
+        _began(options.began),
         _tree(scaled.scene(), _system->structure(), Units(*_system)) {
     _queue_options.flush_seconds = scene.output.flush_seconds;
     _queue_options.flush_rows = scene.output.flush_orbits;
-    if (scene.survey.team_size > 1) _queue_options.root_works_up_to = 1;  // rank 0 is in no team
+    if (scene.survey.team_size > 1) {
+      _queue_options.root_works_up_to = 1;  // rank 0 is in no team
+      _queue_options.stop_seconds = 0.0;    // teams end the step that they are in, however long it takes
+    }
     if (std::isfinite(scene.limits.task_time)) _queue_options.task_seconds = scene.limits.task_time;
+    if (comm.is_root()) _time.emplace(scene.limits.time, options.walltime, _began);
     _summary.atlas = core::atlas_in(directory);
   }
 
@@ -115,10 +118,10 @@ class Run {
   void begin(bool resume) {
     // On every rank, so that a wrong model is the same error everywhere; a resumed one may have changed since.
     std::vector<queue::Task> sweeps;
-    {
-      const core::InterruptionScope nothing_lost(queue::stop_requested);
-      sweeps = sweep_tasks(_scaled.scene(), *_system);
-    }
+    // After limits.time, too: its survey has an archive.
+    queue::do_interruptibly(
+        "the search for starts", [this] { return queue::stop_requested() && !(_time && _time->reached()); },
+        [&] { sweeps = sweep_tasks(_scaled.scene(), *_system); });
     core::on_root(_comm.get(), [&] {
       make_folder(_folder);
       _lock = archive::FolderLock(_folder);
@@ -177,7 +180,7 @@ class Run {
   }
 
   void sweep() {
-    SweepRecorder recorder({_display, _time, *_keeper, *_flusher}, _sweeps_ended);
+    SweepRecorder recorder({_display, *_keeper, *_flusher}, _sweeps_ended);
     const queue::RunSummary swept =
         queue::run(_comm, _queue_options, std::move(_start.unfinished), _executor, recorder, *_flusher);
     _start.unfinished.clear();
@@ -185,7 +188,7 @@ class Run {
   }
 
   void follow() {
-    TreeRecorder recorder({_display, _time, *_keeper, *_flusher}, _tree, std::move(_start.left_out));
+    TreeRecorder recorder({_display, *_keeper, *_flusher}, _tree, std::move(_start.left_out));
     std::vector<queue::Task> tasks = std::move(_start.unfinished);
     std::string given;
     core::on_root(_comm.get(), [&] {
@@ -211,8 +214,8 @@ class Run {
   void note_stop(const queue::RunSummary& run) {
     _summary.stopped_early = run.stopped_early;
     if (!_comm.is_root() || !run.stopped_early) return;
-    if (_time.reached())
-      _summary.remarks.push_back(_time.remark(run));
+    if (_time->reached())
+      _summary.remarks.push_back(_time->remark(run));
     else if (queue::stop_requested())
       _summary.remarks.push_back(
           fmt::format("stopped as asked: tasks cut short: {}, not begun: {}", run.stopped, run.waiting - run.stopped));
@@ -223,8 +226,9 @@ class Run {
 
   void end() {
     _display.finish();
+    if (_time) _time->end();
     // After a signal or the wall time others wait for the machine.
-    _summary.archived = core::agreed(_comm.get(), !_summary.stopped_early || _time.reached_scene());
+    _summary.archived = core::agreed(_comm.get(), !_summary.stopped_early || (_time && _time->reached_scene()));
     write_archive(_comm, _scene, _system, _keeper->last(), _tree, _sweeps_ended, _summary);
     if (_summary.stopped_early) return;
     core::on_root(_comm.get(), [&] {
@@ -245,7 +249,8 @@ class Run {
   TeamExecutor _team;
   StoringExecutor _executor;
   ProgressDisplay _display;
-  TimeLimit _time;
+  Clock::time_point _began;
+  std::optional<TimeLimit> _time;  // on rank 0
   FamilyTree _tree;
   queue::Options _queue_options;
   archive::FolderLock _lock;  // on rank 0
@@ -255,7 +260,6 @@ class Run {
   SweepsEnded _sweeps_ended;
   std::set<std::string> _known;  // keys of tasks of an earlier run
   Summary _summary;
-  Clock::time_point _began = Clock::now();
 };
 
 /// The part of a rank that follows a leader.
@@ -271,10 +275,9 @@ struct Follower {
 Summary run_survey(const core::Communicator& comm, const scene::Scene& scene,
                    const std::shared_ptr<const systems::System>& system, const std::filesystem::path& directory,
                    const RunOptions& options) {
-  const ScaledScene scaled = [&] {
-    const core::InterruptionScope nothing_lost(queue::stop_requested);
-    return ScaledScene(scene, system);
-  }();
+  std::optional<ScaledScene> in_scales;
+  queue::do_interruptibly("the choice of scales", queue::stop_requested, [&] { in_scales.emplace(scene, system); });
+  const ScaledScene& scaled = *in_scales;
   Teams teams(comm, scene.survey.team_size);
   std::optional<Run> run;
   std::optional<Follower> follower;

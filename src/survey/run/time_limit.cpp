@@ -19,18 +19,30 @@ double without_margin(double wall) { return wall - std::min(margin_share * wall,
 
 }  // namespace
 
-TimeLimit::TimeLimit(double scene, double wall) : _scene(scene), _wall(without_margin(wall)) {}
+TimeLimit::TimeLimit(double scene, double wall, Clock::time_point began) : _scene(scene), _wall(without_margin(wall)) {
+  const std::chrono::duration<double> limit(std::min(_scene, _wall));
+  if (limit >= Clock::time_point::max() - began) return;  // never
+  const auto until = began + std::chrono::ceil<Clock::duration>(limit);
+  _thread = std::thread([this, until] {
+    std::unique_lock lock(_mutex);
+    if (_woken.wait_until(lock, until, [this] { return _over; }) || queue::stop_requested()) return;
+    _reached = true;
+    queue::request_stop();
+  });
+}
 
 TimeLimit::~TimeLimit() {
+  end();
   if (_reached) queue::clear_stop();
 }
 
-void TimeLimit::tick() {
-  if (_reached || queue::stop_requested()) return;
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - _began;
-  if (passed.count() < std::min(_scene, _wall)) return;
-  _reached = true;
-  queue::request_stop();
+void TimeLimit::end() {
+  {
+    const std::lock_guard lock(_mutex);
+    _over = true;
+  }
+  _woken.notify_all();
+  if (_thread.joinable()) _thread.join();
 }
 
 std::string TimeLimit::remark(const queue::RunSummary& run) const {

@@ -1,27 +1,33 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <limits>
+#include <mutex>
 #include <string>
+#include <thread>
 
 #include "orbweaver/queue/run.hpp"
 
 namespace orbweaver::survey {
 
 /// The scene's limits.time and the program's wall time: asks the queue of this process to stop early
-/// (queue::request_stop) once one of them has passed since the object was made. It ends a run and decides nothing else.
-/// Only rank 0's counts.
+/// (queue::request_stop) once one of them has passed, by a thread of its own, so that a task that never reports cannot
+/// keep it from that. It ends a run and decides nothing else. One is needed, that of rank 0.
 class TimeLimit {
  public:
-  /// Seconds. A run with a wall time is stopped a little earlier, so that there is time to end it.
-  explicit TimeLimit(double scene, double wall = std::numeric_limits<double>::infinity());
+  using Clock = std::chrono::steady_clock;
+  /// Seconds since `began`. A run with a wall time is stopped a little earlier, so that there is time to end it.
+  explicit TimeLimit(double scene, double wall = std::numeric_limits<double>::infinity(),
+                     Clock::time_point began = Clock::now());
   TimeLimit(const TimeLimit&) = delete;
   TimeLimit& operator=(const TimeLimit&) = delete;
   /// Takes its own request back, so that a later run in this process is not stopped by it.
   ~TimeLimit();
 
-  /// To be called from the observer's ticks.
-  void tick();
+  /// Asks for no stop any more.
+  void end();
   [[nodiscard]] bool reached() const noexcept { return _reached; }
   /// That it was the scene's: then the archive is wanted as it is.
   [[nodiscard]] bool reached_scene() const noexcept { return _reached && _scene <= _wall; }
@@ -31,8 +37,11 @@ class TimeLimit {
  private:
   double _scene;
   double _wall;
-  bool _reached = false;
-  std::chrono::steady_clock::time_point _began = std::chrono::steady_clock::now();
+  std::atomic<bool> _reached{false};
+  std::mutex _mutex;
+  std::condition_variable _woken;
+  bool _over = false;
+  std::thread _thread;
 };
 
 }  // namespace orbweaver::survey

@@ -9,6 +9,7 @@
 #include "orbweaver/archive/file/sealed_file.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/survey_folder.hpp"
+#include "orbweaver/core/text.hpp"
 #include "tasks/payload/payload.hpp"
 
 namespace orbweaver::survey {
@@ -78,6 +79,7 @@ JournalFile write_journal(const std::filesystem::path& folder, std::size_t numbe
 
 std::vector<EndedTask> read_journal(const std::filesystem::path& folder, const JournalFile& file) {
   std::vector<EndedTask> entries = unsealed<Journal>(folder / file.name, journal_seal).entries;
+  for (EndedTask& entry : entries) entry.outcome.reason = core::recordable(entry.outcome.reason);
   if (entries.size() != file.entries)
     throw core::InputError(fmt::format("{}: it should list {} ended tasks and lists {}", (folder / file.name).string(),
                                        file.entries, entries.size()));

@@ -7,7 +7,6 @@
 
 #include "orbweaver/queue/observer.hpp"
 #include "run/segment_flusher.hpp"
-#include "run/time_limit.hpp"
 #include "state/checkpoint_keeper.hpp"
 #include "tree/base_families.hpp"
 #include "tree/family_tree.hpp"
@@ -17,12 +16,11 @@ namespace orbweaver::survey {
 /// What every recorder serves.
 struct Recorded {
   queue::Observer& display;
-  TimeLimit& time;
   CheckpointKeeper& keeper;
   const SegmentFlusher& flusher;
 };
 
-/// Passes everything on to the display, minds the time, and writes checkpoints.
+/// Passes everything on to the display, and writes checkpoints.
 class Recorder : public queue::Observer {
  public:
   explicit Recorder(const Recorded& to) : _to(to) {}
@@ -46,10 +44,7 @@ class Recorder : public queue::Observer {
   }
   void flushing(int, const queue::TaskQueue& queue) override { _to.keeper.take(queue, left_out_tasks()); }
   void flushed(int) override { _to.keeper.commit(_to.flusher.written()); }
-  void tick(const queue::TaskCounts& counts) override {
-    _to.time.tick();
-    _to.display.tick(counts);
-  }
+  void tick(const queue::TaskCounts& counts) override { _to.display.tick(counts); }
   [[nodiscard]] const std::vector<queue::Task>& left_out_tasks() const { return _left_out; }
 
  protected:

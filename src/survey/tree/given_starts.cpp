@@ -10,6 +10,7 @@
 
 #include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/archive/read/reader.hpp"
+#include "orbweaver/core/command_line.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/loop/curve/in_units.hpp"
@@ -43,8 +44,9 @@ std::size_t family_row(const archive::Archive& atlas, const std::string& family)
   const std::vector<std::string>& names = atlas.families().texts("name");
   const auto found = std::find(names.begin(), names.end(), family);
   if (found == names.end())
-    throw core::InputError(fmt::format("expected a family of {}, got `{}`; `orbweaver show {} families` lists them",
-                                       atlas.path().string(), family, atlas.path().string()));
+    throw core::InputError(fmt::format("expected a family of {}, got `{}`; `{}` lists them", atlas.path().string(),
+                                       family,
+                                       core::archive_command_line({"show", atlas.path().string(), "families"})));
   return static_cast<std::size_t>(found - names.begin());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -61,6 +62,8 @@ struct RunOptions {
   Display display = Display::none;
   bool resume = false;  ///< go on from the directory's checkpoint, if there is one
   double walltime = std::numeric_limits<double>::infinity();  ///< seconds, after which the survey stops, resumable
+  /// From when on it, limits.time and Summary::seconds count.
+  std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 };
 
 /// Surveys a scene into `directory`/atlas.h5: equilibria, sweeps, then every family found, as tasks of the queue

@@ -9,6 +9,7 @@
 
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "tasks/branch/requested.hpp"
@@ -78,15 +79,8 @@ void BranchTask::begin(const std::string& bytes) {
 }
 
 BranchState BranchTask::state_at(const continuation::Frontier& frontier) const {
-  return {frontier,
-          _followed.curve.known(),
-          _events.detector_state(),
-          _events.folds(),
-          _followed.last.value(),
-          _events.count(),
-          _events.passed_one(),
-          _followed.outcome,
-          _events.tasks()};
+  return {frontier,        _followed.curve.known(), _events.detector_state(), _events.folds(), _followed.last.value(),
+          _events.count(), _events.passed_one(),    _followed.outcome,        _events.tasks()};
 }
 
 queue::TaskOutcome BranchTask::run() {
@@ -95,7 +89,7 @@ queue::TaskOutcome BranchTask::run() {
     ending = follow();
     if (!_stopped) finish();
   } catch (const std::exception& error) {  // here, not in the queue, so that the summary still counts the orbits kept
-    ending = {continuation::EndReason::failure, error.what()};
+    ending = {continuation::EndReason::failure, core::recordable(error.what())};
     if (_followed.outcome.limited_by == 0)
       _followed.outcome.limited_by = orbit_limited;  // from its start: where it stands is not known
   }

@@ -1,5 +1,6 @@
 #include "branch_work.hpp"
 
+#include "orbweaver/core/text.hpp"
 #include "payload.hpp"
 
 namespace orbweaver::survey {
@@ -11,7 +12,12 @@ queue::Task task_of(const BranchWork& work) {
 std::string pack(const BranchWork& work) { return to_payload(work); }
 std::string pack(const BranchOutcome& outcome) { return to_payload(outcome); }
 BranchWork unpack_branch_work(const std::string& bytes) { return from_payload<BranchWork>(bytes); }
-BranchOutcome unpack_branch_outcome(const std::string& bytes) { return from_payload<BranchOutcome>(bytes); }
+
+BranchOutcome unpack_branch_outcome(const std::string& bytes) {
+  BranchOutcome outcome = from_payload<BranchOutcome>(bytes);
+  outcome.end.detail = core::recordable(outcome.end.detail);  // what a plugin has thrown
+  return outcome;
+}
 
 continuation::Start start_of(const BranchWork& work, const systems::Structure& system) {
   continuation::Start start;

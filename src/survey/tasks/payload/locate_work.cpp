@@ -1,6 +1,7 @@
 #include "locate_work.hpp"
 
 #include "keys.hpp"
+#include "orbweaver/core/text.hpp"
 #include "payload.hpp"
 
 namespace orbweaver::survey {
@@ -13,7 +14,12 @@ queue::Task task_of(const LocateWork& work) {
 std::string pack(const LocateWork& work) { return to_payload(work); }
 std::string pack(const LocateOutcome& outcome) { return to_payload(outcome); }
 LocateWork unpack_locate_work(const std::string& bytes) { return from_payload<LocateWork>(bytes); }
-LocateOutcome unpack_locate_outcome(const std::string& bytes) { return from_payload<LocateOutcome>(bytes); }
+
+LocateOutcome unpack_locate_outcome(const std::string& bytes) {
+  LocateOutcome outcome = from_payload<LocateOutcome>(bytes);
+  outcome.remark = core::recordable(outcome.remark);  // what a plugin has thrown
+  return outcome;
+}
 
 std::string branch_key(const LeavingRecord& leaving, int side) {
   return leaving.key + (leaving.both_sides ? (side > 0 ? "+" : "-") : "");
