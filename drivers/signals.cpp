@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include "orbweaver/core/posix_file.hpp"
 #include "orbweaver/queue/stop.hpp"
 
 namespace orbweaver::drivers {
@@ -76,7 +77,7 @@ void stop_on_signals() {
 
 void tell_passed_on(int signal) {
   for (const Named& one : stop_signals)
-    if (one.number == signal) std::ofstream(file_of_passed_on()) << one.name;
+    if (one.number == signal) core::write_file(file_of_passed_on(), {one.name});
 }
 
 void forget_passed_on() {
