@@ -8,6 +8,7 @@
 
 #include "event_function.hpp"
 #include "orbweaver/numerics/locate.hpp"
+#include "place_error.hpp"
 #include "turn.hpp"
 
 namespace orbweaver::bifurcation {
@@ -35,42 +36,29 @@ bool has_determinant(const systems::System& system, const Event& event) {
          system.structure().symplectic;
 }
 
-/// A zero of an index less 2 or -2 that its error moves by more than `tolerance`, as beside another one: that of the
-/// determinant, if it has one there.
-numerics::Located sharpened(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
-                            EventFunction& function, const Interval& within, const numerics::Located& zero,
-                            double tolerance) {
-  if (event.is_parted || !has_determinant(system, event)) return zero;
-  const double uncertain = function.uncertainty_at(zero.position);
-  if (!(uncertain > tolerance)) return zero;
-  Event parted = event;
-  parted.is_parted = true;
-  EventFunction exact(system, family, parted, within);
+/// A zero of an index less 2 or -2 that its error moves by `uncertain`, as beside another one: that of the determinant,
+/// if it has one there.
+std::optional<numerics::Located> sharpened(EventFunction& exact, const Interval& within, double zero, double uncertain,
+                                           double tolerance) {
   for (double width = wider * uncertain; std::isfinite(width); width *= wider) {
-    const Interval around{std::max(within.from, zero.position - width), std::min(within.to, zero.position + width)};
+    const Interval around{std::max(within.from, zero - width), std::min(within.to, zero + width)};
     const double ends = std::min(std::abs(exact(around.from)), std::abs(exact(around.to)));
     if (exact(around.from) * exact(around.to) < 0.0) {
       const auto sharp = root_of(exact, around, tolerance);
       const bool is_zero = sharp && std::abs(exact(sharp->position)) <= left_at_zero * ends;
-      return is_zero ? *sharp : zero;  // orbits of two families may meet there
+      return is_zero ? sharp : std::nullopt;  // orbits of two families may meet there
     }
     if (around.from == within.from && around.to == within.to) break;
   }
-  return zero;
+  return std::nullopt;
 }
 
 /// The same of a place where an index touches 2 or -2: its square there is known to half the digits of the place.
-numerics::Located sharpened_touch(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
-                                  const Interval& within, const numerics::Located& touch, double tolerance) {
-  if (!has_determinant(system, event)) return touch;
-  Event parted = event;
-  parted.is_parted = true;
-  EventFunction exact(system, family, parted, within);
+std::optional<numerics::Located> sharpened_touch(EventFunction& exact, const Interval& within, double touch,
+                                                 double tolerance) {
   const double half = std::max(share_beside_touch * (within.to - within.from), least_beside_touch);
   return numerics::locate_minimum([&](double position) { return std::abs(exact(position)); },
-                                  std::max(within.from, touch.position - half),
-                                  std::min(within.to, touch.position + half), tolerance)
-      .value_or(touch);
+                                  std::max(within.from, touch - half), std::min(within.to, touch + half), tolerance);
 }
 
 /// Whether the sign changes by a jump: at the zero the function is far more than its error bound, and about as large as
@@ -164,18 +152,38 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   std::optional<numerics::Located> located;
-  if (event.passed) {
-    located = numerics::locate_root([&](double position) { return function.twist_at(position); }, from, to, absolute);
-  } else if (event.is_double) {
-    located =
-        numerics::locate_root([&](double position) { return function.deviation_at(position); }, from, to, absolute);
+  Event parted = event;
+  parted.is_parted = true;
+  EventFunction exact(system, family, parted, {from, to});
+  // What is zero, by which the place is known, and where that has been asked.
+  BoundedFunction zero = [&](double position) { return function.reading(position); };
+  EventFunction* asked = &function;
+  const auto enclosed = [&](double position) {
+    return enclosure_of_zero(zero, asked->asked(), position, from, to, absolute);
+  };
+  const auto sharpen = [&](const std::optional<numerics::Located>& sharp) {
+    if (!sharp) return;
+    located = sharp;
+    zero = [&](double position) { return exact.reading(position); };
+    asked = &exact;
+  };
+  if (event.passed || event.is_double) {
+    zero = [&](double position) {
+      return event.passed ? function.twist_at(position) : function.deviation_at(position);
+    };
+    located = numerics::locate_root([&](double position) { return zero(position).value; }, from, to, absolute);
   } else if (event.tangency) {
-    const auto size = [&](double position) { return std::abs(function(position)); };
-    located = numerics::locate_minimum(size, from, to, absolute);
-    if (located) located = sharpened_touch(system, family, event, {from, to}, *located, absolute);
+    located =
+        numerics::locate_minimum([&](double position) { return std::abs(function(position)); }, from, to, absolute);
+    if (located && has_determinant(system, event))
+      sharpen(sharpened_touch(exact, {from, to}, located->position, absolute));
   } else if (event.kind == Event::Kind::test_function) {
     located = root_of(function, {from, to}, absolute);
-    if (located) located = sharpened(system, family, event, function, {from, to}, *located, absolute);
+    if (located && !event.is_parted && has_determinant(system, event)) {
+      const Enclosure around = enclosed(located->position);
+      const double uncertain = std::max(around.before, around.behind);
+      if (uncertain > absolute) sharpen(sharpened(exact, {from, to}, located->position, uncertain, absolute));
+    }
   } else {
     located = turn(system, family, event, function, {from, to}, absolute, why);
     if (!located && why.reason == NotLocated::Reason::unclear_fold) return std::nullopt;
@@ -213,6 +221,10 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
       return std::nullopt;
     }
   }
+  const Enclosure around = event.kind == Event::Kind::test_function
+                               ? enclosed(located->position)
+                               : enclosure_of_fold(function, located->position, {from, to}, absolute);
+  crossing->place_error = place_error(*asked, family, located->position, function.seen().at(located->position), around);
   if (event.kind == Event::Kind::test_function && has_sector(event.function.kind) && event.function.sector.q == 1)
     crossing->point.tangent = settled_direction(family, crossing->point, {from, to});
   crossing->width = located->width;

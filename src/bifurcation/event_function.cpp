@@ -27,8 +27,8 @@ constexpr double same_direction = 0.999;
 
 /// A value is zero that moves the place by this share of what it may be off, by the function's mean slope.
 constexpr double negligible = 1e-2;
-/// Of its error, what a value must be to tell a slope.
-constexpr double told = 100.0;
+
+constexpr Reading none{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
 double slope(const systems::System& system, Event::Kind kind, const continuation::CurvePoint& point) {
   if (kind == Event::Kind::fold_period) return period_slope(point);
@@ -77,13 +77,19 @@ double turning(const systems::System& system, Event::Kind kind, const loop::Loop
   return kind == Event::Kind::fold_period ? loop.period : continuation::energy_of(system, loop);
 }
 
-double EventFunction::operator()(double position) {
+Reading EventFunction::reading(double position) {
   const auto known = _known.find(position);
-  if (known != _known.end()) return known->second.value;
+  if (known != _known.end()) return known->second.reading;
   const std::optional<Crossing> there = at(position, false, is_birth(position));
-  if (!there) return std::numeric_limits<double>::quiet_NaN();  // it says why each time that it is asked
-  _known[position] = {there->reading.value, there->stability};
-  return there->reading.value;
+  if (!there) return none;  // it says why each time that it is asked
+  _known[position] = {there->reading, there->stability};
+  return there->reading;
+}
+
+std::vector<double> EventFunction::asked() const {
+  std::vector<double> positions;
+  for (const auto& [position, there] : _known) positions.push_back(position);
+  return positions;
 }
 
 double EventFunction::size_at(double position) const {
@@ -95,28 +101,19 @@ double EventFunction::known_over(double position, double size) const {
   return value_over(_event.function, _system.structure(), _known.at(position).stability, size);
 }
 
-double EventFunction::uncertainty_at(double position) {
-  const std::optional<Crossing> zero = at(position);
-  if (!zero || !(zero->reading.error > 0.0)) return 0.0;
-  double away = std::numeric_limits<double>::infinity();
-  double slope = 0.0;
-  for (const auto& [other, there] : _known)
-    if (std::abs(there.value) > told * zero->reading.error && std::abs(other - position) < away) {
-      away = std::abs(other - position);
-      slope = std::abs(there.value) / away;
-    }
-  return zero->reading.error / slope;
+Reading EventFunction::twist_at(double position) {
+  const std::optional<Crossing> there = at(position);
+  return there ? Reading{there->stability.twist, there->stability.fundamental_error.front()} : none;
 }
 
-double EventFunction::twist_at(double position) {
+Reading EventFunction::deviation_at(double position) {
   const std::optional<Crossing> there = at(position);
-  return there ? there->stability.twist : std::numeric_limits<double>::quiet_NaN();
+  return there ? index_deviation(_system.structure(), there->stability, _event.function.sector) : none;
 }
 
-double EventFunction::deviation_at(double position) {
+double EventFunction::turning_at(double position) {
   const std::optional<Crossing> there = at(position);
-  return there ? index_deviation(_system.structure(), there->stability, _event.function.sector).value
-               : std::numeric_limits<double>::quiet_NaN();
+  return there ? turning(_system, _event.kind, there->point.loop) : none.value;
 }
 
 std::optional<Crossing> EventFunction::at(double position, bool whole, bool tells_birth) {
@@ -133,6 +130,9 @@ std::optional<Crossing> EventFunction::at(double position, bool whole, bool tell
       point->tangent = loop::with_cutoff(before.tangent, point->loop.cutoff, point->loop.dimension);
     }
   if (!point) return without_value(NotLocated::Reason::no_orbit, position, period_before(position));
+  const std::vector<double>& parameters = point->loop.parameters;
+  _seen[position] = {point->loop.period, continuation::energy_of(_system, point->loop),
+                     parameters.empty() ? none.value : parameters.front()};
   Crossing out;
   out.point = std::move(*point);
   const auto known = fold || is_birth(position) ? _known.end() : _known.find(position);

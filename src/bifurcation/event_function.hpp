@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "orbweaver/numerics/locate.hpp"
@@ -38,7 +39,18 @@ class EventFunction {
                 const Interval& within)
       : _system(system), _family(family), _event(event), _within(within) {}
 
-  double operator()(double position);
+  double operator()(double position) { return reading(position).value; }
+
+  /// The function with its error bound; a slope has none.
+  Reading reading(double position);
+
+  /// Where it is known.
+  [[nodiscard]] std::vector<double> asked() const;
+
+  /// Period, energy and parameter of an orbit, NaN where there are none.
+  using Levels = std::array<double, 3>;
+  /// Of all orbits that were asked for.
+  [[nodiscard]] const std::map<double, Levels>& seen() const { return _seen; }
 
   /// How far the nearest index is from the sector's value at a place where the function is known; 0 of other functions.
   [[nodiscard]] double size_at(double position) const;
@@ -46,10 +58,11 @@ class EventFunction {
   /// The function over indices up to `size` at a place where it is known (`value_over`).
   [[nodiscard]] double known_over(double position, double size) const;
 
-  /// How far the function's error at a zero may move it: the slope is taken to the nearest value that is told.
-  double uncertainty_at(double position);
-  double twist_at(double position);
-  double deviation_at(double position);
+  /// `Stability::twist`, whose entries of the map are off by no more than its trace.
+  Reading twist_at(double position);
+  Reading deviation_at(double position);
+  /// What turns at a fold.
+  double turning_at(double position);
 
   /// Why the function had no value where it was asked for last without one.
   [[nodiscard]] const std::optional<NotLocated>& without_value() const { return _without_value; }
@@ -66,7 +79,7 @@ class EventFunction {
 
   /// Of test functions with the stability that it follows from.
   struct Known {
-    double value;
+    Reading reading;
     spectrum::Stability stability;
   };
 
@@ -75,6 +88,7 @@ class EventFunction {
   const Event& _event;
   Interval _within;
   std::map<double, Known> _known;  // by position
+  std::map<double, Levels> _seen;
   std::optional<NotLocated> _without_value;
 };
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
@@ -95,7 +96,13 @@ std::optional<CrossingFound> crossing_beneath(const std::shared_ptr<const system
     curve.add(0.5, *middle);
     curve.add(1.0, *after);
     NotLocated why;
-    if (auto crossing = locate(*system, curve, event, 0.0, 1.0, why)) return CrossingFound{event, std::move(*crossing)};
+    if (auto crossing = locate(*system, curve, event, 0.0, 1.0, why)) {
+      // Positions are no lengths here.
+      if (system->scales().are_one())
+        crossing->place_error.arclength *= continuation::arclength_in_units(*system, *before, *middle) +
+                                           continuation::arclength_in_units(*system, *middle, *after);
+      return CrossingFound{event, std::move(*crossing)};
+    }
     if (why.reason == NotLocated::Reason::no_orbit) return std::nullopt;
   }
   return std::nullopt;

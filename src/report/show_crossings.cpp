@@ -57,6 +57,9 @@ void print_crossings(std::ostream& out, const archive::Archive& atlas, const std
   grid.add_column("q", cells_of(crossings.integers("sector_q")));
   grid.add_column("j", cells_of(crossings.integers("sector_j")));
   grid.add_column("kernel", cells_of(crossings.integers("kernel_dimension")));
+  const std::string in_level = fmt::format("place_error_{}", level.column);
+  grid.add_column("place error", cells_of(crossings.reals("place_error"), "{:.1e}"));
+  grid.add_column(fmt::format("in {}", level.title), cells_of(crossings.reals(in_level), "{:.1e}"));
   grid.add_column("residual", cells_of(crossings.reals("residual"), "{:.1e}"));
   grid.add_column("test value", cells_of(crossings.reals("test_value"), "{:.8g}"));
   grid.add_column("born there", families_at(atlas, "crossing"), false);

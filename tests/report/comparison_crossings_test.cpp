@@ -30,6 +30,23 @@ TEST(Comparison, CrossingsHaveAPlace) {
                 ElementsAre(DifferenceKind::crossing_only_in_a, DifferenceKind::crossing_only_in_b));
 }
 
+// What an index leaves open of a place is no difference, and no more than that.
+TEST(Comparison, PlacesOfCrossingsMayDifferByTheirErrors) {
+  const auto open_by = [](double error, double moved) {
+    return changed([&](Records& records) {
+      archive::CrossingRecord& crossing = records.crossings[1];
+      crossing.place_error = crossing.place_error_period = crossing.place_error_energy = error;
+      crossing.period += moved;
+      crossing.energy += moved;
+    });
+  };
+  EXPECT_TRUE(compared(open_by(1e-3, 0.0), open_by(1e-3, 1.9e-3)).same());
+  EXPECT_TRUE(compared(open_by(1e-3, 0.0), open_by(archive::not_computed, 0.9e-3)).same());
+  EXPECT_THAT(kinds(compared(open_by(1e-3, 0.0), open_by(1e-3, 2.1e-3))),
+              ElementsAre(DifferenceKind::crossing_place, DifferenceKind::crossing_place));
+  EXPECT_TRUE(compared(open_by(0.5, 0.0), open_by(0.5, 0.3)).same()) << "farther than other crossings are near";
+}
+
 TEST(Comparison, CrossingsBesideOneAnotherGoToTheNearest) {
   const auto with = [](const std::vector<double>& places) {
     return changed([&](Records& records) {

@@ -339,15 +339,19 @@ TEST(Show, CrossingsReadablyWithTheFamiliesBornAndEndingThere) {
   records.crossings[0].multiplicity = 2;
   records.crossings[0].residual = -3.5e-12;
   records.crossings[0].test_value = -2;
+  records.crossings[0].place_error = 1.5e-3;
+  records.crossings[0].place_error_energy = 2.5e-4;
   records.crossings[2].kernel_dimension = -1;
   const Archive atlas(test::write_sample_atlas(test::fresh_folder("crossings"), header, records));
-  const std::string head = "row  family     period  energy  kind             m  q  j  kernel  residual  test value  ";
+  const std::string head =
+      "row  family     period  energy  kind             m  q  j  kernel  place error  in energy  residual  test value "
+      " ";
   const std::string of_two =
-      R"(  2  Out-Phase     5.5       -  branch-point     1  1  0       2         -           -  )";
+      R"(  2  Out-Phase     5.5       -  branch-point     1  1  0       2            -          -         -           -  )";
   EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable), head + R"(born there            end there
-  0  In-Phase      4.5       -  fold-energy      1  1  0       -         -           -  )" +
+  0  In-Phase      4.5       -  fold-energy      1  1  0       -            -          -         -           -  )" +
                                                                  R"(-                     Ästhetik "B", 1
-  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2  -3.5e-12          -2  ID1, Ästhetik "B", 1  -
+  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2      1.5e-03    2.5e-04  -3.5e-12          -2  ID1, Ästhetik "B", 1  -
 )" + of_two + "-                     -\n");
   std::ostringstream out;
   print_table(out, atlas, "crossings", TextFormat::readable, {.family = "Out-Phase"});

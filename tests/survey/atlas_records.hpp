@@ -54,6 +54,10 @@ inline archive::Records records_of(const Atlas& atlas) {
     crossing.sector_j = static_cast<int>(crossings.integers("sector_j")[row]);
     crossing.sector_q = static_cast<int>(crossings.integers("sector_q")[row]);
     crossing.fundamental_order = static_cast<int>(crossings.integers("fundamental_order")[row]);
+    crossing.place_error = crossings.reals("place_error")[row];
+    crossing.place_error_period = crossings.reals("place_error_period")[row];
+    crossing.place_error_energy = crossings.reals("place_error_energy")[row];
+    crossing.place_error_parameter = crossings.reals("place_error_parameter")[row];
     crossing.state = std::vector<double>(atlas.header().state_names.size(), 0.0);
     records.crossings.push_back(crossing);
   }

@@ -245,6 +245,41 @@ TEST_F(WitnessOf, AnIndexThatPassesWithoutACrossing) {
   EXPECT_THAT(rows[0].text, HasSubstr("2 pi i 1/2"));
 }
 
+TEST_F(WitnessOf, PlacesThatAreKnownWorseThanTheScenesTolerance) {
+  if (world->is_root()) {
+    records.crossings[0].place_error = 3e-3;
+    records.crossings[0].place_error_energy = 2e-6;
+    records.crossings[1].place_error_energy = 1e-12;
+  }
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  ASSERT_THAT(rows, ElementsAre(finding("undecided", "open-place")));
+  EXPECT_EQ(rows[0].crossing, 0);
+  EXPECT_EQ(rows[0].deviation, 3e-3);
+  EXPECT_THAT(rows[0].text, HasSubstr("known to 3.0e-03 in arclength only"));
+  EXPECT_THAT(rows[0].text, HasSubstr("2.0e-06 in E"));
+}
+
+// A bound that is wider than all values on the unit circle is no number to tell.
+TEST_F(WitnessOf, ABoundThatSaysNothingIsSaidInWords) {
+  for (const auto& [error, text] : {std::pair{6.2e172, "a stability index is not known:"},
+                                    std::pair{0.5, "a stability index is known to 0.5 only:"}}) {
+    if (world->is_root()) {
+      const auto elliptic = std::find_if(records.orbits.begin(), records.orbits.end(), [](const auto& orbit) {
+        return std::abs(orbit.fundamental_stability.front()) < 1.0;
+      });
+      ASSERT_NE(elliptic, records.orbits.end());
+      elliptic->stability_error = error;
+    }
+    const std::vector<Found> rows = found();
+    if (!world->is_root()) continue;
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [](const Found& f) { return f.kind == "undecided-indices"; });
+    ASSERT_NE(row, rows.end());
+    EXPECT_THAT(row->text, HasSubstr(text));
+  }
+}
+
 // All orbits of a family lie behind the values that an index of 2 passes.
 TEST_F(WitnessOf, AnIndexThatIsNotTheBirths) {
   const std::string key = world->is_root() ? key_named("StD") : "";

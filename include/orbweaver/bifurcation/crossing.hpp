@@ -5,6 +5,7 @@
 #include <string>
 
 #include "orbweaver/bifurcation/fold_watch.hpp"
+#include "orbweaver/bifurcation/place_error.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
 #include "orbweaver/core/serialization.hpp"
@@ -44,6 +45,7 @@ struct Crossing {
   spectrum::Stability stability;
   Reading reading{};   ///< of the test function, or of the slope of what folds along the family
   double width = 0.0;  ///< of the interval of positions that is left around it
+  PlaceError place_error;
 };
 
 /// Why an event was not located.

@@ -364,20 +364,23 @@ void FamilyDifferences::compare_places(const Pair& pair, int crossing_a, int cro
   const TreeCrossing& b = _b.crossings[index(crossing_b)];
   ++_result.crossings;
   const std::string where = fmt::format("{}, {}", pair.a.name, place_text(a));
-  const auto compare_place = [&](const char* quantity, double x, double y, double scale) {
+  const auto compare_place = [&](const char* quantity, double x, double y, double scale, double open) {
     if (std::isnan(x) != std::isnan(y))
       add(DifferenceKind::crossing_place, pair,
           fmt::format("{}: {} is {:.15g} in A, {:.15g} in B", place_text(a), quantity, x, y));
     const double by = std::abs(x - y) / scale;
-    note_deviation(fmt::format("{} of crossings", quantity), by, _options.tolerance, where);
-    if (by > _options.tolerance)
+    const double allowed = _options.tolerance + open / scale;
+    note_deviation(fmt::format("{} of crossings", quantity), by, allowed, where);
+    if (by > allowed)
       add(DifferenceKind::crossing_place, pair,
           fmt::format("{}: {} is {:.15g} in A, {:.15g} in B: {:.2e} relative, where {:.1e} is allowed", place_text(a),
-                      quantity, x, y, by, _options.tolerance),
-          by, _options.tolerance);
+                      quantity, x, y, by, allowed),
+          by, allowed);
   };
-  compare_place("period", a.period, b.period, a.period);
-  compare_place(_a.in_parameter() ? "parameter" : "energy", a.level, b.level, a.level_scale);
+  // What both leave open of their places.
+  compare_place("period", a.period, b.period, a.period, a.place_error_period + b.place_error_period);
+  compare_place(_a.in_parameter() ? "parameter" : "energy", a.level, b.level, a.level_scale,
+                a.place_error_level + b.place_error_level);
   if (a.kernel_dimension != b.kernel_dimension)
     add(DifferenceKind::crossing_kernel, pair,
         fmt::format("{}: the kernel has dimension {} in A, {} in B", place_text(a), a.kernel_dimension,

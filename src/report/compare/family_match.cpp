@@ -15,7 +15,8 @@ constexpr std::size_t samples = 12;
 /// The curves of different families cross, or leave one another slowly; those of one agree but for what only one has
 /// reached.
 constexpr double same_share = 0.5;
-/// Crossings of one kind and sector on one family are further apart, relative in period and in energy.
+/// Crossings of one kind and sector on one family are further apart, relative in period and in energy, than this beyond
+/// the errors of their places.
 constexpr double near_crossing = 1e-3;
 
 struct Candidate {
@@ -157,28 +158,25 @@ class Matcher {
     return x.kind == y.kind && x.multiplicity == y.multiplicity && x.sector_j == y.sector_j && x.sector_q == y.sector_q;
   }
 
-  // Relative distance in period and energy.
-  [[nodiscard]] static double distance(const TreeCrossing& x, const TreeCrossing& y) {
-    const double in_level = std::abs(x.level - y.level) / x.level_scale;
-    return std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_level) ? 0.0 : in_level);
-  }
-
   void match_crossings(const TreeFamily& a, const TreeFamily& b) {
     std::vector<int> by_period = b.crossings;
     const auto period_of = [&](int row) { return _b.crossings[index(row)].period; };
     std::sort(by_period.begin(), by_period.end(), [&](int x, int y) { return period_of(x) < period_of(y); });
+    double widest = 0.0;
+    for (const int row : by_period) widest = std::fmax(widest, _b.crossings[index(row)].place_error_period);
     std::vector<std::tuple<double, int, int>> pairs;
     for (const int row : a.crossings) {
       const TreeCrossing& x = _a.crossings[index(row)];
-      auto other = std::lower_bound(by_period.begin(), by_period.end(), x.period * (1.0 - near_crossing),
+      const double reach = near_crossing * x.period + x.place_error_period + widest;
+      auto other = std::lower_bound(by_period.begin(), by_period.end(), x.period - reach,
                                     [&](int candidate, double from) { return period_of(candidate) < from; });
-      for (; other != by_period.end() && period_of(*other) <= x.period * (1.0 + near_crossing); ++other) {
+      for (; other != by_period.end() && period_of(*other) <= x.period + reach; ++other) {
         const TreeCrossing& y = _b.crossings[index(*other)];
-        if (is_alike(x, y) && distance(x, y) <= near_crossing) pairs.emplace_back(distance(x, y), row, *other);
+        if (is_alike(x, y) && apart_beyond_errors(x, y) <= near_crossing) pairs.emplace_back(apart(x, y), row, *other);
       }
     }
     std::sort(pairs.begin(), pairs.end());
-    for (const auto& [apart, x, y] : pairs) {
+    for (const auto& [away, x, y] : pairs) {
       if (_match.crossing_of_a[index(x)] >= 0 || _match.crossing_of_b[index(y)] >= 0) continue;
       _match.crossing_of_a[index(x)] = y;
       _match.crossing_of_b[index(y)] = x;

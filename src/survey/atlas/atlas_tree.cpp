@@ -62,6 +62,12 @@ void widen_level_scales(std::vector<Invariants>& points, double tolerance) {
     }
 }
 
+double apart_less(const TreeCrossing& x, const TreeCrossing& y, double period, double level) {
+  const double in_period = (std::abs(x.period - y.period) - period) / x.period;
+  const double in_level = (std::abs(x.level - y.level) - level) / x.level_scale;
+  return std::fmax(std::fmax(in_period, in_level), 0.0);
+}
+
 std::vector<FamilyEnd> ends_of(const std::string& reason, const std::vector<std::int64_t>& steps, std::size_t first,
                                std::size_t count) {
   const std::vector<EndKind> kinds = ends_in(reason);
@@ -114,6 +120,10 @@ AtlasTree::AtlasTree(const archive::Archive& archive, double tolerance) : atlas(
     crossing.period = events.reals("period")[row];
     crossing.parameter = parameter;
     crossing.level = events.reals(in_parameter() ? "parameter" : "energy")[row];
+    const auto known = [&](const char* column) { return std::fmax(0.0, events.reals(column)[row]); };
+    crossing.place_error = known("place_error");
+    crossing.place_error_period = known("place_error_period");
+    crossing.place_error_level = known(in_parameter() ? "place_error_parameter" : "place_error_energy");
     TreeFamily& owner = families[static_cast<std::size_t>(crossing.family)];
     owner.crossings.push_back(static_cast<int>(row));
     const auto after =
@@ -134,6 +144,12 @@ std::size_t AtlasTree::first_step_of(const TreeFamily& family) const {
   for (std::size_t n = 0; n < family.orbits(); ++n)
     if (std::abs(steps[family.first_orbit + n]) < std::abs(steps[family.first_orbit + first])) first = n;
   return first;
+}
+
+double apart(const TreeCrossing& x, const TreeCrossing& y) { return apart_less(x, y, 0.0, 0.0); }
+
+double apart_beyond_errors(const TreeCrossing& x, const TreeCrossing& y) {
+  return apart_less(x, y, x.place_error_period + y.place_error_period, x.place_error_level + y.place_error_level);
 }
 
 std::string place_text(const TreeCrossing& crossing) {

@@ -49,6 +49,7 @@ void describe(const systems::System& system, const Event& event, const bifurcati
   outcome.multiplicity = by_sector ? sector.multiplicity(outcome.fundamental_order) : 1;
   outcome.kind = kind_of(event, outcome.multiplicity);
   outcome.residual = crossing.reading.value;
+  outcome.place_error = crossing.place_error;
   outcome.test_value = archive::not_computed;
   if (by_sector) {  // the index itself, and how far it is from the sector's
     outcome.residual = bifurcation::index_deviation(system.structure(), crossing.stability, sector).value;

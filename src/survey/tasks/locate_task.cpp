@@ -44,9 +44,6 @@ constexpr double at_limit = 1e-9;
 /// locations to 1e-10 on a stretch of 1e-6 or more.
 constexpr double turning_slope = 1e-3;
 
-/// Values of indices on the unit circle are no further apart.
-constexpr double apart_indices = 4.0;
-
 /// Of a kernel vector that the family's symmetries leave as it is, they keep all but what it is wrong by, 1e-6.
 constexpr double in_symmetric_space = 0.99;
 
@@ -311,7 +308,7 @@ class Location {
   void fail(const bifurcation::Crossing& crossing, const std::string& why) {
     const double off =
         std::abs(bifurcation::index_deviation(_system->structure(), crossing.stability, _event.function.sector).value);
-    if (!(off > apart_indices)) {
+    if (!(off > values_on_circle)) {
       _failure = why;
     } else {
       _outcome.undecided = true;

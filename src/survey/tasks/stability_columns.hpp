@@ -8,6 +8,9 @@
 
 namespace orbweaver::survey {
 
+/// Stability indices of multipliers on the unit circle are no further apart: one that is known no better is not known.
+inline constexpr double values_on_circle = 4.0;
+
 /// The archive's `stability_error`: the largest error bound of the full period's indices, or multipliers; those beyond
 /// double precision have none. NaN where no index is in its range.
 [[nodiscard]] double stability_error(const spectrum::Stability& stability);

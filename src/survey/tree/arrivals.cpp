@@ -49,8 +49,11 @@ loop::Loop gap_between(const loop::Loop& one, const loop::Loop& other) {
 }  // namespace
 
 bool within_window(const ArrivalRecord& arrival, const LocateOutcome& crossing) {
-  return std::abs(arrival.period / born_period(crossing) - 1.0) <= arrival_window &&
-         !(std::abs(arrival.level - crossing.level()) > arrival_window * (1.0 + std::abs(crossing.level())));
+  const bifurcation::PlaceError& open = crossing.place_error;
+  const double in_level = std::fmax(0.0, std::isnan(crossing.parameter) ? open.energy : open.parameter);
+  const double in_period = crossing.multiplicity * std::fmax(0.0, open.period);
+  return std::abs(arrival.period - born_period(crossing)) <= arrival_window * born_period(crossing) + in_period &&
+         !(std::abs(arrival.level - crossing.level()) > arrival_window * (1.0 + std::abs(crossing.level())) + in_level);
 }
 
 std::optional<Meeting> Arrivals::meeting(const ArrivalRecord& arrival, const LocateOutcome& crossing) const {

@@ -59,6 +59,10 @@ archive::CrossingRecord row_of(const LocateOutcome& crossing, double arclength, 
   row.fundamental_order = crossing.fundamental_order;
   row.test_value = crossing.test_value;
   row.kernel_residual = crossing.kernel_singular_value;
+  row.place_error = crossing.place_error.arclength;
+  row.place_error_period = crossing.place_error.period * units.time;
+  row.place_error_energy = crossing.place_error.energy * units.energy();
+  if (units.in_parameter()) row.place_error_parameter = crossing.place_error.parameter * units.parameter(0);
   return row;
 }
 

@@ -29,6 +29,7 @@
 #include "tasks/units.hpp"
 #include "verify/crossing_families.hpp"
 #include "verify/distance_to_orbit.hpp"
+#include "verify/place_error_check.hpp"
 
 namespace orbweaver::survey {
 
@@ -190,6 +191,7 @@ class CrossingCheck {
       return std::nullopt;
     }
     if (archive::is_fold(_kind)) slopes(curve, a, b);
+    check_place_error(_atlas, _row, curve, *found, claims);
     return Place{std::move(*point), *found - a.position, b.position - *found};
   }
 

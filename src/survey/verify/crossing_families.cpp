@@ -67,7 +67,8 @@ class CrossingFamilies {
       if (!locate_beneath(_atlas.system(), branch_options(_atlas.scene(), nullptr),
                           _atlas.loop(family.first_orbit + orbit), found))
         continue;
-      if (std::abs(found.period / _multiplicity * _system.scales().time - period) <= same_period * period) return true;
+      const double away = std::abs(found.period / _multiplicity * _system.scales().time - period);
+      if (away <= same_period * period + _atlas.tree().crossings[_row].place_error_period) return true;
     }
     return false;
   }

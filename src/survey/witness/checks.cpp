@@ -9,6 +9,7 @@
 #include "witness/checks/failed_tasks.hpp"
 #include "witness/checks/index_changes.hpp"
 #include "witness/checks/mirror_images.hpp"
+#include "witness/checks/open_places.hpp"
 #include "witness/checks/shared_points.hpp"
 #include "witness/checks/stored_twice.hpp"
 
@@ -27,7 +28,7 @@ std::vector<std::unique_ptr<Check>> list() {
 
 std::vector<std::unique_ptr<Check>> all_checks() {
   return list<FailedTasks, StoredTwice, SharedPoints, BranchCounts, EquilibriumBranches, EquilibriumFamilies,
-              BaseBirths, Ends, MirrorImages, IndexChanges, Certificates>();
+              BaseBirths, Ends, MirrorImages, OpenPlaces, IndexChanges, Certificates>();
 }
 
 }  // namespace orbweaver::survey

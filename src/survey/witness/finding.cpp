@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "tasks/stability_columns.hpp"
+
 namespace orbweaver::survey {
 
 namespace {
@@ -88,6 +90,11 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
                          names.other_family);
     case FindingKind::mirror_end:
       return fmt::format("ends otherwise, or elsewhere, than its mirror image {}", names.other_family);
+    case FindingKind::open_place:
+      return fmt::format(
+          "{}: its place is known to {:.1e} in arclength only{}: the index passes its value so slowly, or is known so "
+          "badly, that its error bound leaves no more",
+          names.crossing, f.deviation, f.detail);
     case FindingKind::index_change:
       return fmt::format("a multiplier passes exp(2 pi i {}/{}), and no crossing is listed there", f.number,
                          f.other_number);
@@ -95,7 +102,7 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
       return fmt::format("ends where rounding does not tell orbits from their neighbours: {}", f.detail);
     case FindingKind::undecided_event: return f.detail;
     case FindingKind::undecided_indices:
-      if (!std::isfinite(f.deviation))
+      if (!(f.deviation < values_on_circle))
         return "a stability index is not known: crossings are not told from rounding there";
       return fmt::format("a stability index is known to {:.2g} only: crossings are not told from rounding there",
                          f.deviation);
@@ -152,6 +159,7 @@ std::string_view name_of(FindingKind kind) {
     case FindingKind::mirror_crossings: return "mirror-crossings";
     case FindingKind::mirror_place: return "mirror-place";
     case FindingKind::mirror_end: return "mirror-end";
+    case FindingKind::open_place: return "open-place";
     case FindingKind::index_change: return "index-change";
     case FindingKind::undecided_end: return "undecided-end";
     case FindingKind::undecided_event: return "undecided-event";

@@ -97,6 +97,11 @@ struct CrossingRecord {
   int fundamental_order = 1;
   double test_value = not_computed;
   double kernel_residual = not_computed;  ///< the largest singular value that counts as zero
+  // How far the crossing may lie from there: in arclength, and what these are over it.
+  double place_error = not_computed;
+  double place_error_period = not_computed;
+  double place_error_energy = not_computed;
+  double place_error_parameter = not_computed;
 };
 
 /// One row of /sections: a crossing of the scene's Poincare section by an orbit (family_key, step).

@@ -43,8 +43,12 @@ struct TreeCrossing {
   int sector_q = 1;
   int fundamental_order = 1;
   double period = 0.0;
-  double level = 0.0;         ///< the energy, or the parameter that moves
-  double level_scale = 0.0;   ///< of the family's orbit nearest to it; NaN: neither
+  double level = 0.0;        ///< the energy, or the parameter that moves
+  double level_scale = 0.0;  ///< of the family's orbit nearest to it; NaN: neither
+  /// How far it may lie from its place, in what the place is told by; 0 where an older archive does not say.
+  double place_error = 0.0;  ///< in arclength
+  double place_error_period = 0.0;
+  double place_error_level = 0.0;
   std::string parameter;      ///< that moves; empty: none does
   std::vector<int> children;  ///< rows of the families born there
 };
@@ -63,6 +67,11 @@ struct AtlasTree {
   /// Of the family's orbits, the one of the first step.
   [[nodiscard]] std::size_t first_step_of(const TreeFamily& family) const;
 };
+
+/// How far two places of crossings are apart, relative in period and level.
+[[nodiscard]] double apart(const TreeCrossing& x, const TreeCrossing& y);
+/// The same beyond what the errors of both explain.
+[[nodiscard]] double apart_beyond_errors(const TreeCrossing& x, const TreeCrossing& y);
 
 /// "period-doubling T 8.44293", "fold-parameter T 5.23599, drive_amplitude 0.4"
 [[nodiscard]] std::string place_text(const TreeCrossing& crossing);

@@ -48,6 +48,7 @@ enum class FindingKind {
   mirror_crossings,      ///< its mirror image has other_number crossings, it number
   mirror_place,          ///< a crossing of its mirror image lies elsewhere
   mirror_end,            ///< its mirror image ends otherwise, or elsewhere
+  open_place,            ///< rounding leaves the place of the crossing open by `deviation` in arclength
   index_change,          ///< the index passes exp(2 pi i number/other_number), where no crossing is listed
   undecided_end,         ///< ends where orbits are not told from their neighbours
   undecided_event,       ///< in `detail`: not located, where orbits are not told from their neighbours

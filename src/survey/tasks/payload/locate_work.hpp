@@ -75,6 +75,7 @@ struct LocateOutcome {
   int multiplicity = 1;
   int kernel_dimension = 0;
   double residual = 0.0;
+  bifurcation::PlaceError place_error;
   double kernel_singular_value = 0.0;
   double next_singular_value = 0.0;
   double test_value = 0.0;
@@ -87,12 +88,13 @@ struct LocateOutcome {
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 
-  static constexpr int wire_version = 3;
+  static constexpr int wire_version = 4;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
     core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, parameter, kind,
-                            multiplicity, kernel_dimension, residual, kernel_singular_value, next_singular_value,
-                            test_value, state, q, j, fundamental_order, leaving, undecided, remark, limited_by);
+                            multiplicity, kernel_dimension, residual, place_error, kernel_singular_value,
+                            next_singular_value, test_value, state, q, j, fundamental_order, leaving, undecided, remark,
+                            limited_by);
     if constexpr (Archive::is_loading::value) check_limits(limited_by);
   }
 };

@@ -177,12 +177,12 @@ class IndexChanges final : public Check {
   static bool is_listed(const Evidence& evidence, const TreeFamily& family, const bifurcation::Sector& sector,
                         double begin, double end) {
     const auto& arclengths = evidence.tree.atlas.crossings().reals("arclength");
-    const double margin = std::isfinite(end - begin) ? arclength_margin * (end - begin) : 0.0;
     return std::any_of(family.crossings.begin(), family.crossings.end(), [&](int row) {
       const TreeCrossing& crossing = evidence.crossing(row);
       const double at = arclengths[static_cast<std::size_t>(row)];
       const bool is_fold = archive::crossing_kind_of(crossing.kind) == archive::CrossingKind::fold_energy;
       const bool fits = is_fold ? sector.q == 1 : crossing.sector_q == sector.q && crossing.sector_j == sector.j;
+      const double margin = bifurcation::error_margin * crossing.place_error;
       return fits && at >= begin - margin && at <= end + margin;
     });
   }
@@ -201,9 +201,6 @@ class IndexChanges final : public Check {
     finding.deviation = stability.fundamental.front().real() - sector.value(evidence.system->structure().symplectic);
     return finding;
   }
-
-  /// Of the interval: a crossing at an orbit is located to 1e-10.
-  static constexpr double arclength_margin = 1e-6;
 };
 
 }  // namespace orbweaver::survey

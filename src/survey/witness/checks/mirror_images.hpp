@@ -30,7 +30,7 @@ class MirrorImages final : public Check {
   }
 
  private:
-  /// Relative in period and level: crossings are located to an index of 1e-9.
+  /// Relative in period and level, beyond the errors of both places: what two computations of one curve differ by.
   static constexpr double same_place = 1e-6;
 
   // The last of the later ones that begins at an image and shares its first orbits' period most nearly: modes with
@@ -71,7 +71,7 @@ class MirrorImages final : public Check {
     for (std::size_t n = 0; n < a.crossings.size(); ++n) {  // by arclength
       const TreeCrossing& x = evidence.crossing(a.crossings[n]);
       const TreeCrossing& y = evidence.crossing(b.crossings[place_of(n, b.crossings.size(), backwards)]);
-      const double away = apart(x, y);
+      const double away = apart_beyond_errors(x, y);
       if (is_another(x, y)) {
         finding.kind = FindingKind::mirror_place;
         finding.crossing = a.crossings[n];
@@ -85,13 +85,8 @@ class MirrorImages final : public Check {
     }
   }
 
-  static double apart(const TreeCrossing& x, const TreeCrossing& y) {
-    const double in_level = std::abs(x.level - y.level) / x.level_scale;
-    return std::fmax(std::abs(x.period / y.period - 1.0), std::isnan(in_level) ? 0.0 : in_level);
-  }
-
   static bool is_another(const TreeCrossing& x, const TreeCrossing& y) {
-    return x.kind != y.kind || x.multiplicity != y.multiplicity || apart(x, y) > same_place;
+    return x.kind != y.kind || x.multiplicity != y.multiplicity || apart_beyond_errors(x, y) > same_place;
   }
 
   static std::size_t place_of(std::size_t n, std::size_t count, bool backwards) {

@@ -99,11 +99,13 @@ class SharedPoints final : public Check {
     return sum;
   }
 
-  static bool is_near(const Invariants& x, double period, double level) {
-    return std::abs(period - x.value(Invariant::period)) <= near_place * x.value(Invariant::period) &&
-           !(std::abs(level - x.value(Invariant::level)) > near_place * x.scale_of(Invariant::level));
+  static bool is_near(const Invariants& x, double period, double level, double in_period = 0.0, double in_level = 0.0) {
+    const double most_in_period = near_place * x.value(Invariant::period) + x.floor_of(Invariant::period) + in_period;
+    const double most_in_level = near_place * x.scale_of(Invariant::level) + x.floor_of(Invariant::level) + in_level;
+    return std::abs(period - x.value(Invariant::period)) <= most_in_period &&
+           !(std::abs(level - x.value(Invariant::level)) > most_in_level);
   }
-  /// Crossings that lie closer, relative in period and level, are one place.
+  /// Crossings that lie closer, relative in period and level and beyond their errors, are one place.
   static constexpr double near_place = 1e-5;
 
   // The orbit at the crossing, gone around as what is born there.
@@ -125,6 +127,8 @@ class SharedPoints final : public Check {
     x.values = {m * crossing.period, crossing.level, m * action, archive::not_computed, archive::not_computed};
     x.scale = {m * crossing.period, crossing.level_scale, std::abs(m * action), 1.0, 1.0};
     for (std::size_t i = 0; i < x.floor.size(); ++i) x.floor[i] = of_place * x.scale[i];
+    x.floor[static_cast<std::size_t>(Invariant::period)] += m * crossing.place_error_period;
+    x.floor[static_cast<std::size_t>(Invariant::level)] += crossing.place_error_level;
     x.floor[static_cast<std::size_t>(Invariant::action)] = of_action * x.scale_of(Invariant::action);
     return x;
   }
@@ -175,7 +179,7 @@ class SharedPoints final : public Check {
     return std::any_of(places.begin(), places.end(), [&](int row) {
       const TreeCrossing& place = evidence.crossing(row);
       const double around = place.family == family ? 1.0 : place.multiplicity;
-      return is_near(x, around * place.period, place.level);
+      return is_near(x, around * place.period, place.level, around * place.place_error_period, place.place_error_level);
     });
   }
 };

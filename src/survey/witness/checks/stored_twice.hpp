@@ -132,8 +132,10 @@ class StoredTwice final : public Check {
       const TreeCrossing& crossing = evidence.crossing(row);
       const double period = x.value(Invariant::period);
       const double around = std::max(1.0, std::round(period / crossing.period));
-      return std::abs(around * crossing.period - period) <= near_crossing * period &&
-             !(std::abs(crossing.level - x.value(Invariant::level)) > near_crossing * x.scale_of(Invariant::level));
+      return std::abs(around * crossing.period - period) <=
+                 near_crossing * period + around * crossing.place_error_period &&
+             !(std::abs(crossing.level - x.value(Invariant::level)) >
+               near_crossing * x.scale_of(Invariant::level) + crossing.place_error_level);
     };
     for (const int row : {pair.first, pair.second}) {
       const TreeFamily& family = evidence.family(row);
