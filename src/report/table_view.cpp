@@ -25,11 +25,15 @@ std::vector<Shown> all_columns(const archive::Table& table) {
   return columns;
 }
 
-Shown named_column(const archive::Header& header, const archive::Table& table, const std::string& name) {
+/// The parameter that moves names its column too, as the heads of tables do.
+Shown named_column(const archive::Archive& atlas, const archive::Table& table, const std::string& name) {
+  const archive::Header& header = atlas.header();
   const std::vector<Shown> all = all_columns(table);
+  const std::string moving = atlas.moving_parameter();
+  const std::string column = !moving.empty() && name == moving ? "parameter" : name;
   std::vector<std::string> names;
   for (const Shown& shown : all) {
-    if (shown.name == name) return shown;
+    if (shown.name == column) return shown;
     names.push_back(shown.name);
     for (std::size_t i = 0; i < shown.count; ++i)
       if (value_name(header, shown.column->spec, i) == name) return {shown.column, name, i, 1};
@@ -80,14 +84,14 @@ std::string value_name(const archive::Header& header, const archive::ColumnSpec&
 
 TableView view_of(const archive::Archive& atlas, const archive::Table& table, const Selection& selection) {
   TableView view;
-  for (const std::string& name : selection.columns) view.columns.push_back(named_column(atlas.header(), table, name));
+  for (const std::string& name : selection.columns) view.columns.push_back(named_column(atlas, table, name));
   if (selection.columns.empty()) view.columns = all_columns(table);
   view.rows.resize(table.rows());
   std::iota(view.rows.begin(), view.rows.end(), 0);
   if (!selection.family.empty()) view.rows = rows_of_family(atlas, table, selection.family);
   if (!selection.sort.empty()) {
     const bool descending = selection.sort.front() == '-';
-    const Shown by = named_column(atlas.header(), table, selection.sort.substr(descending ? 1 : 0));
+    const Shown by = named_column(atlas, table, selection.sort.substr(descending ? 1 : 0));
     if (by.count != 1)
       throw core::InputError(fmt::format("cannot sort by `{}`, which has {} values: name one, such as {}", by.name,
                                          by.count, value_name(atlas.header(), by.column->spec, 0)));

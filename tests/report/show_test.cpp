@@ -74,6 +74,16 @@ TEST(Show, RowsOfAFamilyInChosenColumnsAndOrder) {
   EXPECT_EQ(lines_of(selected(atlas, "families", TextFormat::csv, {"ID1", {"name"}, ""})).size(), 2U);
 }
 
+// As it heads the column in other tables.
+TEST(Show, TheParameterThatMovesNamesItsColumn) {
+  Header header = test::sample_header();
+  header.scale_names.push_back("g");
+  header.scales.push_back(1.0);
+  const Archive atlas = sample_atlas("moving", header);
+  EXPECT_EQ(selected(atlas, "orbits", TextFormat::csv, {"ID1", {"g"}, "-g"}),
+            selected(atlas, "orbits", TextFormat::csv, {"ID1", {"parameter"}, "-parameter"}));
+}
+
 TEST(Show, SelectionsOfWhatIsNotThereAreRefused) {
   const Archive atlas = sample_atlas("no_selection", test::sample_header());
   const auto message = [&](const std::string& table, const Selection& selection) -> std::string {

@@ -23,22 +23,33 @@ export const indexWarp: Warp = {
   from: (u) => (Math.abs(u) <= 2 ? u : Math.sign(u) * 2 * Math.exp((Math.abs(u) - 2) / 2)),
 };
 
-/** The orbits' values at the arclength of a crossing, linearly between its neighbours. */
-function interpolated(atlas: Atlas, crossing: Crossing, values: Float64Array): number {
+/** The orbits beside a crossing, and how far it is from the first to the second; beyond the family its end, twice. */
+function neighbours(atlas: Atlas, crossing: Crossing): [number, number, number] {
   const family = atlas.families[crossing.family]!;
-  if (family.count === 0) return NaN;
+  if (family.count === 0) return [-1, -1, NaN];
   const s = (orbit: number): number => atlas.value('arclength', orbit);
   let low = family.first;
   let high = family.first + family.count - 1;
-  if (crossing.arclength <= s(low)) return values[low]!;
-  if (crossing.arclength >= s(high)) return values[high]!;
+  if (crossing.arclength <= s(low)) return [low, low, 0];
+  if (crossing.arclength >= s(high)) return [high, high, 0];
   while (high - low > 1) {
     const middle = (low + high) >> 1;
     if (s(middle) <= crossing.arclength) low = middle;
     else high = middle;
   }
-  const part = (crossing.arclength - s(low)) / (s(high) - s(low));
-  return values[low]! + part * (values[high]! - values[low]!);
+  return [low, high, (crossing.arclength - s(low)) / (s(high) - s(low))];
+}
+
+/** The orbits' values at the arclength of a crossing, linearly between its neighbours. */
+function interpolated(atlas: Atlas, crossing: Crossing, values: Float64Array): number {
+  const [low, high, part] = neighbours(atlas, crossing);
+  return low < 0 ? NaN : values[low]! + part * (values[high]! - values[low]!);
+}
+
+/** Of the largest modulus of a multiplier: where it passes 1 beside a crossing, at which a multiplier has modulus 1, it is 1 there. */
+function largestAt(atlas: Atlas, crossing: Crossing, values: Float64Array): number {
+  const [low, high] = neighbours(atlas, crossing);
+  return (values[low]! - 1) * (values[high]! - 1) <= 0 ? 1 : interpolated(atlas, crossing, values);
 }
 
 /** All axes that an atlas has: those of which every value is missing are left out. */
@@ -80,11 +91,13 @@ export function quantitiesOf(atlas: Atlas): Quantity[] {
       add(id, `${noun}${number}${side}${of}`, id, column(name, part), { warp: indexWarp });
     }
   }
-  if (atlas.index.complex)
-    add('rho', 'largest |μ|', '|μ|', Float64Array.from({ length: atlas.orbits }, (_, orbit) => {
+  if (atlas.index.complex) {
+    const largest = Float64Array.from({ length: atlas.orbits }, (_, orbit) => {
       const sizes = atlas.multipliers('stability', orbit).map((m) => Math.hypot(m.re, m.im));
       return sizes.length ? Math.max(...sizes) : NaN;
-    }), { warp: indexWarp });
+    });
+    add('rho', 'largest |μ|', '|μ|', largest, { warp: indexWarp, ofCrossing: (c) => largestAt(atlas, c, largest) });
+  }
   add('amplitude', 'rms amplitude', 'amplitude', column('amplitude'));
   names.forEach((name, i) => add(`max-${name}`, `largest ${name}`, `max ${name}`, column('largest', i)));
   names.forEach((name, i) =>
