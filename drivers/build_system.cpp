@@ -65,7 +65,7 @@ void compile(const std::vector<std::string>& words, const std::string& what) {
   if (*status != 0)
     throw core::InputError(
         fmt::format("{} does not compile; the compiler's messages are above, and docs/your_own_system.md says what a "
-                    "field is made of (sin, not std::sin)",
+                    "field is made of (sin, not std::sin; smooth functions of the state, no abs, max, if or ?:)",
                     what));
 }
 
@@ -119,6 +119,9 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
                              source.string(), "-o", unfinished.path().string()});
   const std::string what = options.model.empty() ? source.string() : "the combination";
   core::write_line(stderr, fmt::format("compiling {} for all scalars: about half a minute", what));
+  std::vector<std::string> first = words;
+  first.insert(first.end(), {"-DORBWEAVER_ONE_SCALAR", "-fsyntax-only", source.string()});
+  compile(first, what);
   compile(build, what);
   const systems::Plugin& plugin = systems::load_plugin(unfinished.path());
   unfinished.publish();

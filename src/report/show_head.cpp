@@ -43,8 +43,8 @@ std::vector<std::string> parameter_texts(const archive::Header& header) {
 std::vector<std::string> units_texts(const archive::Archive& atlas) {
   const archive::Header& header = atlas.header();
   std::vector<std::string> angles;
-  if (info_of(header) != nullptr)
-    for (const int angle : angles_of(header)) angles.push_back(header.state_names[static_cast<std::size_t>(angle)]);
+  for (const int angle : known_angles_of(header).value_or(std::vector<int>{}))
+    angles.push_back(header.state_names[static_cast<std::size_t>(angle)]);
   std::vector<std::string> texts{
       fmt::format("times{} and states in the units of the parameters", has_energies(atlas) ? ", energies" : "")};
   if (!angles.empty()) texts.insert(texts.begin(), fmt::format("{} in radians", fmt::join(angles, ", ")));

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 
+#include <fmt/format.h>
+
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::report {
@@ -52,11 +54,22 @@ std::string meaning_of(const archive::Header& header) {
   return system == nullptr ? "" : system->info().meaning;
 }
 
-std::vector<int> angles_of(const archive::Header& header) {
-  std::vector<int> angles(header.winding_names.size());
-  std::iota(angles.begin(), angles.end(), 0);
+std::optional<std::vector<int>> known_angles_of(const archive::Header& header) {
+  const std::vector<int>& said = header.winding_coordinates;
+  if (said.size() == header.winding_names.size()) return said;
   const auto system = system_of(header);
-  return system != nullptr && system->structure().angles.size() == angles.size() ? system->structure().angles : angles;
+  if (system == nullptr || system->structure().angles.size() != header.winding_names.size()) return std::nullopt;
+  return system->structure().angles;
+}
+
+std::vector<int> angles_of(const archive::Archive& atlas) {
+  std::optional<std::vector<int>> angles = known_angles_of(atlas.header());
+  if (!angles)
+    throw core::InputError(
+        fmt::format("{} does not say which coordinates wind (it is of format_minor {}, before 11), and its system {} is "
+                    "not known here: give that system's plugin by --plugin",
+                    atlas.path().string(), atlas.format_minor(), atlas.header().system));
+  return *std::move(angles);
 }
 
 }  // namespace orbweaver::report

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,12 @@ namespace orbweaver::report {
 /// What the system is and which coordinates tell its states, in words; empty where it is not known.
 [[nodiscard]] std::string meaning_of(const archive::Header& header);
 
-/// The coordinates that may wind, in the order of the header's winding_names: those of the system, or the first ones
-/// where the program does not know it.
-[[nodiscard]] std::vector<int> angles_of(const archive::Header& header);
+/// The coordinates that may wind, in the order of the header's winding_names: as the archive says, or as its system has
+/// them where it is older than that (format_minor 11). None: such an archive, of a system that this program does not
+/// know.
+[[nodiscard]] std::optional<std::vector<int>> known_angles_of(const archive::Header& header);
+
+/// The same. Throws InputError where they are not known.
+[[nodiscard]] std::vector<int> angles_of(const archive::Archive& atlas);
 
 }  // namespace orbweaver::report

@@ -43,7 +43,7 @@ constexpr std::array table_of_keys{
              "Trailing coordinates that are left out start at 0"},
     KnownKey{"starts.fixed_points.names", "a map", "`{}`", unit_of_states,
              "names of families: the key is the equilibrium, given as in the grid (`[0, 180]`), the value a list of "
-             "names, longest period first"},
+             "names, longest period first; a place where no equilibrium lies is refused"},
     KnownKey{"starts.fixed_points.letters", "a map", "`{}`", "",
              "1 to 4 letters for a family of `names`, with which the names of its branches begin"},
     KnownKey{"starts.sweep", "a map", "none", "", "which small oscillations, and the picture of their eigenvalue"},

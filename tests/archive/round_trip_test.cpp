@@ -82,6 +82,7 @@ void expect_round_trip(const std::string& folder, const Header& header) {
   EXPECT_EQ(atlas.header().scene, header.scene);
   EXPECT_EQ(atlas.header().state_names, header.state_names);
   EXPECT_EQ(atlas.header().winding_names, header.winding_names);
+  EXPECT_EQ(atlas.header().winding_coordinates, header.winding_coordinates);
   EXPECT_EQ(atlas.header().orbweaver_version, header.orbweaver_version);
   EXPECT_EQ(atlas.header().pairs, header.pairs);
   EXPECT_EQ(atlas.header().system, header.system);
@@ -144,6 +145,7 @@ TEST(RoundTrip, AnEmptyAtlasIsValid) {
   const std::filesystem::path folder = test::fresh_folder("empty");
   Header header = sample_header();
   header.winding_names.clear();
+  header.winding_coordinates.clear();
   header.scene.clear();
   const Archive none(test::write_sample_atlas(folder, header, {}));
   EXPECT_EQ(none.families().rows() + none.orbits().rows() + none.crossings().rows() + none.sections().rows(), 0u);

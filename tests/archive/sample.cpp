@@ -105,6 +105,7 @@ Header sample_header(int pairs, bool symplectic) {
   header.scene = "name: sämple\nsystem: {name: made_up}\n";
   header.state_names = {"θ1", "w1"};
   header.winding_names = {"n1"};
+  header.winding_coordinates = {0};
   header.pairs = pairs;
   header.symplectic = symplectic;
   header.system = "made_up";

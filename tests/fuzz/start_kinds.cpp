@@ -58,6 +58,7 @@ Kind start_archives(const std::filesystem::path& folder) {
   header.effects.clear();
   header.state_names = {"q", "p"};
   header.winding_names.clear();
+  header.winding_coordinates.clear();
   header.parameter_names = {"omega"};
   header.parameter_values = {2.0};
   archive::Records records = test::sample_records(header);

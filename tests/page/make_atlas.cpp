@@ -102,6 +102,7 @@ archive::Header header_of() {
   header.scene = "name: </script><script>window.hacked = 1</script>\n";
   header.state_names = {"th1", "th2", "w1", "w2"};
   header.winding_names = {"n1", "n2"};
+  header.winding_coordinates = {0, 1};
   header.pairs = 1;
   header.system = "double_pendulum";
   header.parameter_names = {"g", "l1", "l2", "m1", "m2"};

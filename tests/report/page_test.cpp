@@ -250,7 +250,8 @@ TEST_F(Page, TellsTheSystemInItsIndex) {
   header.parameter_names = {"m1"};
   header.parameter_values = {2.0};
   header.effects.clear();
-  EXPECT_THAT(report::angles_of(header), ::testing::ElementsAre(0, 1));
+  header.winding_coordinates.clear();  // as before format_minor 11
+  EXPECT_THAT(report::known_angles_of(header), ::testing::Optional(::testing::ElementsAre(0, 1)));
   EXPECT_EQ(report::meaning_of(header), "two point masses on massless rods under gravity");
 }
 

@@ -58,9 +58,9 @@ TEST(Plot, SolidWhereStableAndMarksAtCrossings) {
   EXPECT_THAT(script, Not(HasSubstr("title 'branch point'")));  // on another family
 }
 
-std::string error_of(const report::PlotRequest& request) {
+std::string error_of(const report::PlotRequest& request, const archive::Archive& atlas = sample()) {
   try {
-    static_cast<void>(report::plot_script(sample(), request, "picture.svg"));
+    static_cast<void>(report::plot_script(atlas, request, "picture.svg"));
   } catch (const core::InputError& error) {
     return error.what();
   }
@@ -92,6 +92,16 @@ TEST(Plot, ParentsInACircleHaveOneColour) {
   const std::string chain = script_of_chain(8, false);
   EXPECT_THAT(chain, HasSubstr("'f0'"));
   EXPECT_EQ(script_of_chain(8, true), chain);
+}
+
+TEST(Plot, OfASystemWithoutAnEnergyThePictureThatThereIsIsNamed) {
+  archive::Header header = test::sample_header();
+  header.scale_names.push_back("g");
+  header.scales.push_back(1.0);
+  archive::Records records = test::sample_records(header);
+  for (archive::OrbitRecord& orbit : records.orbits) orbit.energy = archive::not_computed;
+  const archive::Archive atlas(test::write_sample_atlas(test::fresh_folder("plot_no_energy"), header, records));
+  EXPECT_THAT(error_of({"energy-period", {}, {}}, atlas), HasSubstr("`tree` draws the period against g"));
 }
 
 TEST(Plot, WhatCannotBeDrawnIsNamed) {

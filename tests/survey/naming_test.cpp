@@ -1,9 +1,11 @@
 #include "orbweaver/survey/tree/naming.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -52,6 +54,20 @@ TEST(Naming, CountsTheNamesOfAPlace) {
   const auto system = systems::make_system("double_pendulum");
   EXPECT_EQ(survey::names_given(scene_with_names(), *system, {0.0, 2.0 * pi, 0.0, 0.0}), 2U);
   EXPECT_EQ(survey::names_given(scene_with_names(), *system, {0.0, 1.0, 0.0, 0.0}), 0U);
+}
+
+TEST(Naming, RefusesAPlaceWhereNothingRests) {
+  const auto system = systems::make_system("double_pendulum");
+  scene::Scene scene = scene_with_names();
+  const std::vector<std::vector<double>> known{{0.0, 0.0, 0.0, 0.0}};
+  EXPECT_NO_THROW(survey::require_named(scene, *system, known)) << "[0, 180] rests, though it is not among them";
+  scene.fixed_points.names.push_back({{0.0, 0.3}, {"Moved"}});
+  try {
+    survey::require_named(scene, *system, known);
+    FAIL() << "nothing rests at th2 = 0.3";
+  } catch (const core::InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("(Moved), where none is: the nearest known is [0, 0, 0, 0]"));
+  }
 }
 
 TEST(Naming, CountsWhereTheSceneGivesNoName) {

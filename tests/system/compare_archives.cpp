@@ -42,6 +42,7 @@ void compare(const Header& a, const Header& b) {
   expect(a.scene == b.scene, "attribute scene");
   expect(a.state_names == b.state_names, "attribute state_names");
   expect(a.winding_names == b.winding_names, "attribute winding_names");
+  expect(a.winding_coordinates == b.winding_coordinates, "attribute winding_coordinates");
   expect(a.pairs == b.pairs && a.symplectic == b.symplectic, "width of the stability columns");
 }
 

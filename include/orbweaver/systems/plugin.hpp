@@ -3,7 +3,9 @@
 /// What the source of a plugin includes: all that a model is written with, and the macro that ends it
 /// (docs/your_own_system.md). `orbweaver build-system` compiles it.
 #include <array>
+#include <utility>
 
+#include "orbweaver/ad/field_functions.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 
@@ -19,8 +21,31 @@ namespace orbweaver::systems {
 template <class... Models>
 inline constexpr std::array plugin_lines{registry_line<Models>...};
 
+/// Compiles the formulas of models for one scalar alone, so that what is wrong with them is said once.
+template <class... Models>
+struct OneScalar {
+  template <class Model>
+  static void formulas(const typename Model::template With<double>& model, const ad::Lanes* z, ad::Lanes* f) {
+    static_assert(
+        requires { model.field(z, f); },
+        "a model has `template <class S> void field(const S* z, S* f) const`, f being dz/dt, a function of the "
+        "present state: delays, differential-algebraic equations and maps are not done (docs/limits.md)");
+    if constexpr (requires { model.field(z, f); }) model.field(z, f);
+    [&]<int... K>(std::integer_sequence<int, K...>) {
+      (static_cast<void>(model.template conserved<K, ad::Lanes>(z)), ...);
+    }
+    (std::make_integer_sequence<int, Model::quantities>{});
+  }
+  static void all(const ad::Lanes* z, ad::Lanes* f, const typename Models::template With<double>&... models) {
+    (formulas<Models>(models, z, f), ...);
+  }
+};
+
 }  // namespace orbweaver::systems
 
+#ifdef ORBWEAVER_ONE_SCALAR
+#define ORBWEAVER_SYSTEMS(...) template struct orbweaver::systems::OneScalar<__VA_ARGS__>
+#else
 /// Exports models, of one name and with different effects, or of different names: ORBWEAVER_SYSTEMS(MyModel). At global
 /// scope, once a plugin.
 #define ORBWEAVER_SYSTEMS(...)                                                                             \
@@ -30,3 +55,4 @@ inline constexpr std::array plugin_lines{registry_line<Models>...};
     .source = ORBWEAVER_PLUGIN_SOURCE, .line_count = orbweaver::systems::plugin_lines<__VA_ARGS__>.size(), \
     .lines = orbweaver::systems::plugin_lines<__VA_ARGS__>.data()                                          \
   }
+#endif

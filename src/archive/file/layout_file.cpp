@@ -76,6 +76,7 @@ class Layout {
     write_numbers("parameter_values", header.parameter_values);
     write_texts("scale_names", header.scale_names);
     write_numbers("scales", header.scales);
+    write_wholes("winding_coordinates", header.winding_coordinates);
     const std::int64_t sum = header_checksum(format, format_minor, header);
     write_attribute("checksum", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &sum);
   }
@@ -131,6 +132,13 @@ class Layout {
     const double none = 0.0;  // HDF5 wants an address even for no values
     write_attribute(name, h5_memory_type({"", ColumnType::real, {}}), dataspace({numbers.size()}),
                     numbers.empty() ? &none : numbers.data());
+  }
+
+  void write_wholes(const char* name, const std::vector<int>& numbers) {
+    std::vector<std::int64_t> wide(numbers.begin(), numbers.end());
+    const hsize_t count = wide.size();
+    if (wide.empty()) wide.push_back(0);  // as for numbers
+    write_attribute(name, h5_memory_type({"", ColumnType::integer, {}}), dataspace({count}), wide.data());
   }
 
   void write_texts(const char* name, const std::vector<std::string>& texts) {

@@ -8,6 +8,7 @@
 #include "h5_types.hpp"
 #include "orbweaver/core/input_file.hpp"
 #include "own_dataset.hpp"
+#include "schema/check_records.hpp"
 #include "schema/row_checksum.hpp"
 
 namespace orbweaver::archive {
@@ -111,6 +112,11 @@ void SerialFile::read_header() {
            "has another number of parameter_values than parameter_names");
     expect(_header.scale_names.size() == _header.scales.size(), "has another number of scales than scale_names");
   }
+  if (_minor >= winding_coordinates_since) {
+    _header.winding_coordinates = whole_attribute("winding_coordinates");
+    const std::string problem = winding_problem(_header);
+    expect(problem.empty(), problem);
+  }
   const std::vector<hsize_t> shape = extents(dataset("orbits/stability"));
   const bool is_real = shape.size() == 2 && shape[1] <= 1;
   const bool is_complex = shape.size() == 3 && shape[2] == 2;
@@ -167,6 +173,18 @@ std::vector<double> SerialFile::real_attribute(const char* name) const {
   std::vector<double> values(count);
   if (!values.empty())
     check_h5<core::InputError>(H5Aread(found.get(), H5T_NATIVE_DOUBLE, values.data()),
+                               fmt::format("'{}': attribute '{}'", _path.string(), name));
+  return values;
+}
+
+std::vector<int> SerialFile::whole_attribute(const char* name) const {
+  const H5Handle found = attribute(name, H5T_INTEGER);
+  const H5Handle space(check_h5<core::InputError>(H5Aget_space(found.get()), "H5Aget_space"), H5Sclose);
+  const auto count = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get())));
+  expect_room(fmt::format("attribute '{}'", name), {count}, 1);
+  std::vector<int> values(count);
+  if (!values.empty())
+    check_h5<core::InputError>(H5Aread(found.get(), H5T_NATIVE_INT, values.data()),
                                fmt::format("'{}': attribute '{}'", _path.string(), name));
   return values;
 }

@@ -62,6 +62,7 @@ class SerialFile {
   [[nodiscard]] std::int64_t integer_attribute(const char* name) const;
   [[nodiscard]] std::vector<std::string> text_attribute(const char* name) const;
   [[nodiscard]] std::vector<double> real_attribute(const char* name) const;
+  [[nodiscard]] std::vector<int> whole_attribute(const char* name) const;
   [[nodiscard]] std::string single_text_attribute(const char* name) const;
   const H5Handle& dataset(const std::string& name);
   [[nodiscard]] std::vector<hsize_t> extents(const H5Handle& dataset) const;

@@ -33,4 +33,13 @@ loop::Loop loop_of(const Archive& atlas, std::size_t orbit, const std::vector<in
   return loop;
 }
 
+loop::Loop loop_of(const Archive& atlas, std::size_t orbit) {
+  const Header& header = atlas.header();
+  if (header.winding_coordinates.size() != header.winding_names.size())
+    throw core::InputError(fmt::format(
+        "{} does not say which coordinates wind: it is of format_minor {}, before 11. Give them from its system",
+        atlas.path().string(), atlas.format_minor()));
+  return loop_of(atlas, orbit, header.winding_coordinates);
+}
+
 }  // namespace orbweaver::archive

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "orbweaver/archive/schema/schema.hpp"
 #include "orbweaver/core/error.hpp"
@@ -104,6 +105,20 @@ void check_header(const Header& header) {
   check_text(record, "the scene", header.scene, longest_scene);
   for (const std::string& name : header.state_names) check_text(record, "a state name", name);
   for (const std::string& name : header.winding_names) check_text(record, "a winding name", name);
+  if (const std::string problem = winding_problem(header); !problem.empty()) expect(false, record, problem);
+}
+
+std::string winding_problem(const Header& header) {
+  const std::vector<int>& wind = header.winding_coordinates;
+  const std::set<int> all(wind.begin(), wind.end());
+  const std::size_t names = header.winding_names.size();
+  const bool fits =
+      wind.size() == names && all.size() == names &&
+      (names == 0 || (*all.begin() >= 0 && *all.rbegin() < static_cast<std::int64_t>(header.state_names.size())));
+  return fits ? ""
+              : fmt::format("has winding_coordinates [{}]; another of 0 to {} for each of the {} winding names was "
+                            "expected",
+                            fmt::join(wind, ", "), header.state_names.size() - 1, names);
 }
 
 void check_orbits(const Header& header, const Records& records) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "orbweaver/archive/schema/records.hpp"
 
@@ -18,6 +19,9 @@ void check_loci(const Header& header, const Records& records);
 void check_equilibria(const Header& header, const Records& records);
 /// `segments`: how many are listed to consolidate.
 void check_voided(const Records& records, std::size_t segments);
+
+/// What is wrong with the header's winding_coordinates; empty: nothing.
+[[nodiscard]] std::string winding_problem(const Header& header);
 
 /// Whether a loop of that cutoff in so many coordinates (1 or more) has `count` modes; false for any damaged numbers.
 [[nodiscard]] bool is_mode_count(std::int64_t count, std::int64_t cutoff, std::int64_t dimension);

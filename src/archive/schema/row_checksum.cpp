@@ -90,6 +90,8 @@ std::int64_t header_checksum(const std::string& format, std::int64_t minor, cons
   bytes.add(header.parameter_values);
   bytes.add(header.scale_names);
   bytes.add(header.scales);
+  if (minor >= winding_coordinates_since)
+    bytes.add(std::vector<std::int64_t>(header.winding_coordinates.begin(), header.winding_coordinates.end()));
   return bytes.checksum();
 }
 

@@ -37,9 +37,10 @@ Order share_order(MPI_Comm comm, Order order) {
   texts = core::agreed(comm, std::move(texts));
   header.state_names = core::agreed(comm, std::move(header.state_names));
   header.winding_names = core::agreed(comm, std::move(header.winding_names));
+  header.winding_coordinates = core::gather_rows(comm, header.winding_coordinates);  // only rank 0 has any
   header.effects = core::agreed(comm, std::move(header.effects));
   header.parameter_names = core::agreed(comm, std::move(header.parameter_names));
-  header.parameter_values = core::gather_rows(comm, header.parameter_values);  // only rank 0 has any
+  header.parameter_values = core::gather_rows(comm, header.parameter_values);
   header.scale_names = core::agreed(comm, std::move(header.scale_names));
   header.scales = core::gather_rows(comm, header.scales);
   order.selection.keys = core::agreed(comm, std::move(order.selection.keys));

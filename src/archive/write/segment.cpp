@@ -105,8 +105,8 @@ std::uint64_t fingerprint_of(const Records& mine) {
 std::vector<std::string> header_texts(const Header& header) {
   std::vector<std::string> texts{header.orbweaver_version, header.scene,
                                  fmt::format("{} {} {}", header.pairs, header.symplectic, header.state_names.size())};
-  texts.push_back(
-      fmt::format("{} {} {}", header.system, fmt::join(header.parameter_values, " "), fmt::join(header.scales, " ")));
+  texts.push_back(fmt::format("{} {} {} {}", header.system, fmt::join(header.winding_coordinates, " "),
+                              fmt::join(header.parameter_values, " "), fmt::join(header.scales, " ")));
   texts.insert(texts.end(), header.state_names.begin(), header.state_names.end());
   texts.insert(texts.end(), header.winding_names.begin(), header.winding_names.end());
   return texts;

@@ -90,7 +90,7 @@ std::size_t stride_of(const archive::Archive& atlas, const std::vector<int>& ang
 }
 
 Loops loops_of(const archive::Archive& atlas, std::size_t bytes) {
-  const std::vector<int> angles = angles_of(atlas.header());
+  const std::vector<int> angles = angles_of(atlas);
   const std::size_t orbits = atlas.orbits().rows();
   const std::size_t stride = stride_of(atlas, angles, bytes);
   Loops loops;

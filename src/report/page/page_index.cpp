@@ -67,7 +67,7 @@ std::string index_members(const archive::Archive& atlas) {
       {"parameterUnits", texts(units_of(header))},
       {"moving", json_text(atlas.moving_parameter())},
       {"stateNames", texts(header.state_names)},
-      {"angles", wholes(angles_of(header))},
+      {"angles", wholes(angles_of(atlas))},
       {"pairs", fmt::format("{}", header.pairs)},
       {"multipliers", holds_multipliers(atlas) ? "true" : "false"},
       {"complex", archive::has_complex_stability(header) ? "true" : "false"},

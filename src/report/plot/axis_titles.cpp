@@ -36,7 +36,7 @@ std::string level_title(const archive::Archive& atlas) {
 }
 
 std::string coordinate_title(const archive::Archive& atlas, std::size_t coordinate) {
-  const std::vector<int> angles = angles_of(atlas.header());
+  const std::vector<int> angles = angles_of(atlas);
   const bool is_angle = std::find(angles.begin(), angles.end(), static_cast<int>(coordinate)) != angles.end();
   return with_unit(atlas.header().state_names[coordinate], is_angle ? "rad" : "");
 }

@@ -108,7 +108,8 @@ Figure plane(const archive::Archive& atlas, const PlotRequest& request, const st
   return figure;
 }
 
-void require_values(const archive::Archive& atlas, const FamilyCurves& curves, const char* column, const char* advice) {
+void require_values(const archive::Archive& atlas, const FamilyCurves& curves, const char* column,
+                    const std::string& advice) {
   const std::vector<double>& values = atlas.orbits().reals(column);
   const std::size_t width = atlas.orbits().column(column).spec.width();
   for (const std::size_t family : curves.families()) {
@@ -171,9 +172,11 @@ Figure tree_figure(const archive::Archive& atlas, const PlotRequest& request) {
 }
 
 Figure energy_period_figure(const archive::Archive& atlas, const PlotRequest& request) {
+  const std::string moving = atlas.moving_parameter();
   require_values(atlas, FamilyCurves(atlas, request.families), "energy",
-                 "the system conserves none; `tree` draws the periods against the parameter that moves");
-  const Axis energy{atlas.moving_parameter().empty() ? level_title(atlas) : "energy E"};
+                 moving.empty() ? "the system conserves none"
+                                : fmt::format("the system conserves none: `tree` draws the period against {}", moving));
+  const Axis energy{moving.empty() ? level_title(atlas) : "energy E"};
   return plane(atlas, request, "period against energy", energy, "energy", {period_title(atlas)}, "period");
 }
 

@@ -20,8 +20,8 @@ constexpr int points_a_harmonic = 12;
 constexpr int fewest_points = 400;
 constexpr int most_points = 8000;
 
-bool is_angle(const archive::Header& header, std::size_t coordinate) {
-  const std::vector<int> angles = angles_of(header);
+bool is_angle(const archive::Archive& atlas, std::size_t coordinate) {
+  const std::vector<int> angles = angles_of(atlas);
   return std::find(angles.begin(), angles.end(), static_cast<int>(coordinate)) != angles.end();
 }
 
@@ -96,9 +96,8 @@ std::vector<PlotPoint> path_of(const loop::Loop& loop, Plane plane) {
 Figure empty_panel(const archive::Archive& atlas, std::size_t family, Plane plane) {
   Figure figure{
       title_of(atlas, family), {coordinate_title(atlas, plane.first)}, {coordinate_title(atlas, plane.second)}};
-  const archive::Header& header = atlas.header();
   figure.equal_scales =
-      header.state_names.size() >= 4 && is_angle(header, plane.first) == is_angle(header, plane.second);
+      atlas.header().state_names.size() >= 4 && is_angle(atlas, plane.first) == is_angle(atlas, plane.second);
   return figure;
 }
 

@@ -94,7 +94,7 @@ Figure section_panel(const archive::Archive& atlas, const FamilyCurves& curves, 
                      const std::string& coordinate) {
   const archive::Header& header = atlas.header();
   const std::size_t dimension = header.state_names.size();
-  const std::vector<int> angles = angles_of(header);
+  const std::vector<int> angles = angles_of(atlas);
   const auto value = [&](std::size_t row, std::size_t i) {
     const double x = atlas.sections().reals("state")[row * dimension + i];
     return std::find(angles.begin(), angles.end(), static_cast<int>(i)) != angles.end() ? turned_back(x) : x;
@@ -127,7 +127,7 @@ Figure section_panel(const archive::Archive& atlas, const FamilyCurves& curves, 
 
 std::vector<Figure> orbit_figures(const archive::Archive& atlas, const PlotRequest& request) {
   const std::size_t family = chosen_family(atlas, request);
-  const std::vector<int> angles = angles_of(atlas.header());
+  const std::vector<int> angles = angles_of(atlas);
   const std::vector<std::size_t> orbits =
       request.step ? std::vector<std::size_t>{orbit_row(atlas, family, *request.step)} : orbits_along(atlas, family);
   std::vector<Figure> panels;
@@ -147,7 +147,7 @@ std::vector<Figure> orbit_figures(const archive::Archive& atlas, const PlotReque
 
 std::vector<Figure> strobe_figures(const archive::Archive& atlas, const PlotRequest& request) {
   const OrbitChoice choice = chosen_orbit(atlas, request);
-  const loop::Loop loop = archive::loop_of(atlas, choice.orbit, angles_of(atlas.header()));
+  const loop::Loop loop = archive::loop_of(atlas, choice.orbit, angles_of(atlas));
   if (!rods_of(atlas, loop::state_at(loop, 0.0)).empty()) return {rod_figure(atlas, choice, loop)};
   std::vector<Figure> panels;
   for (const auto& panel : planes_of(atlas.header())) {
@@ -174,7 +174,7 @@ std::vector<Figure> strobe_figures(const archive::Archive& atlas, const PlotRequ
 
 std::vector<Figure> spectrum_figures(const archive::Archive& atlas, const PlotRequest& request) {
   const OrbitChoice choice = chosen_orbit(atlas, request);
-  const loop::Loop loop = archive::loop_of(atlas, choice.orbit, angles_of(atlas.header()));
+  const loop::Loop loop = archive::loop_of(atlas, choice.orbit, angles_of(atlas));
   Figure figure{fmt::format("{}, {}", title_of(atlas, choice.family), orbit_text(atlas, choice.orbit)),
                 {"harmonic k"},
                 {"modulus of the coefficients", Scale::logarithmic}};

@@ -49,7 +49,7 @@ std::string place_of(const archive::Archive& atlas, const EquilibriumReport& rep
   if (d < 4 || d % 2 != 0 ||
       std::any_of(report.point.begin() + static_cast<std::ptrdiff_t>(d / 2), report.point.end(), moves))
     return report.text;
-  const std::vector<int> angles = angles_of(atlas.header());
+  const std::vector<int> angles = angles_of(atlas);
   std::string text;
   for (std::size_t i = 0; i < d / 2; ++i) {
     const bool is_angle = std::find(angles.begin(), angles.end(), static_cast<int>(i)) != angles.end();

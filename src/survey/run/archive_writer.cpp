@@ -48,6 +48,7 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
   header.scene = scene.text;
   header.state_names = system.info().state_names;
   header.winding_names = system.winding_names();
+  header.winding_coordinates = system.structure().angles;
   header.pairs = system.structure().pairs();
   header.symplectic = system.structure().symplectic;
   header.system = system.info().name;

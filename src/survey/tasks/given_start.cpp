@@ -21,6 +21,7 @@
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/starts/loop_guess.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
+#include "orbweaver/survey/tree/undeclared.hpp"
 
 namespace orbweaver::survey {
 
@@ -249,23 +250,26 @@ Correction corrected(const scene::Scene& scene, const std::shared_ptr<const syst
   return with_energy;
 }
 
-/// How far the trajectory is from `state` after `time`, in the survey's scales, as a text; empty where it does not get
-/// there.
-std::string missed_text(const systems::System& system, const std::vector<double>& state, double time) {
-  std::vector<double> end;
-  try {
-    end = certificate::integrate(system, state, time, guess_tolerance);
-  } catch (const core::NumericalError&) {
-    return "";
-  }
+/// How far the trajectory is from `state` after `time`, in the survey's scales.
+double missed(const systems::System& system, const std::vector<double>& state, double time) {
+  const std::vector<double> end = certificate::integrate(system, state, time, guess_tolerance);
   double square = 0.0;
   for (std::size_t i = 0; i < end.size(); ++i) {
     const double away = end[i] - state[i];
     square += std::pow(system.structure().is_angle(i) ? std::remainder(away, 2.0 * std::numbers::pi) : away, 2);
   }
+  return std::sqrt(square);
+}
+
+/// What is to be done where a trajectory closes to half of its integrator's digits, which no nearer state mends.
+std::string advice_for_closed(const systems::System& system, const std::vector<double>& state, double period) {
+  const int directions = undeclared_directions(system, state, period, guess_tolerance);
+  if (directions == 0) return "";
   return fmt::format(
-      "; after the given period the trajectory is {:.2g} away from the given state (in the survey's scales)",
-      std::sqrt(square));
+      "; its neighbours come back too, in {} direction{} more than the system declares, so that its orbits are not "
+      "isolated (as about a centre, or where something is conserved), unless it lies at a fold or a branch point: "
+      "declare what is conserved (docs/your_own_system.md), or give an orbit at parameters where it is isolated",
+      directions, directions == 1 ? "" : "s");
 }
 
 /// What is to be done where a given state leads to no orbit; empty for other starts.
@@ -273,7 +277,18 @@ std::string advice_for(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
   if (given.from != GivenStart::From::state) return "";
   const systems::Structure& structure = system.structure();
-  std::string text = missed_text(system, work.point, given.period);
+  std::string text;
+  try {
+    const double away = missed(system, work.point, given.period);
+    text = fmt::format(
+        "; after the given period the trajectory is {:.2g} away from the given state (in the survey's "
+        "scales)",
+        away);
+    const std::string closed =
+        away <= std::sqrt(guess_tolerance) ? advice_for_closed(system, work.point, given.period) : "";
+    if (!closed.empty()) return text + closed;
+  } catch (const core::NumericalError&) {  // it does not get there
+  }
   if (structure.driven) {
     std::vector<double> field(work.point.size());
     system.field(1, work.point.data(), field.data());
@@ -302,8 +317,7 @@ SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const 
   outcome.point = work.point;
   const Correction correction = corrected(scene, system, work, team);
   if (!correction.orbit) {
-    if (!work.given.front().is_return())
-      throw core::NumericalError(correction.why + advice_for(*system, work));
+    if (!work.given.front().is_return()) throw core::NumericalError(correction.why + advice_for(*system, work));
     outcome.rejected.push_back(correction.why);
     return outcome;
   }

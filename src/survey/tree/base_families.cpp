@@ -109,6 +109,58 @@ void remark_undeclared(const systems::System& system, const Undeclared& undeclar
         system.structure().conservative() ? "`symplectic`" : "its energy (`conserved`) and `symplectic`"));
 }
 
+/// Of an equilibrium without small oscillations: whether something may oscillate there that the linear field does not
+/// show, and what to do then. Empty where it shows all.
+std::string leaves_open(const systems::System& system, const std::vector<double>& point) {
+  starts::LinearStability stability = starts::LinearStability::undecided;
+  try {
+    stability = starts::linear_modes(system, point).stability;
+  } catch (const core::NumericalError&) {  // undecided
+  }
+  if (stability != starts::LinearStability::neutral && stability != starts::LinearStability::undecided) return "";
+  return ": eigenvalues are 0 there, or not told from 0, so that what oscillates (as x'' = -x^3 does) has no period at "
+         "rest; give an orbit of it with starts.states";
+}
+
+/// The first coordinate that changes at one rate wherever it is: none rests. -1: there is none.
+int steady_coordinate(const systems::System& system, const std::vector<std::vector<double>>& grid) {
+  const auto d = static_cast<std::size_t>(system.dimension());
+  std::vector<double> state(d, 0.0);
+  for (std::size_t i = 0; i < grid.size(); ++i) state[i] = grid[i].empty() ? 0.0 : grid[i].front();
+  std::vector<double> field(d);
+  std::vector<double> jacobian(d * d);
+  std::vector<double> before;
+  std::vector<bool> steady(d, true);
+  for (int probe = 0; probe < 3; ++probe) {  // anywhere, each coordinate by another way
+    for (std::size_t i = 0; i < d; ++i) state[i] += probe * std::sin(static_cast<double>(i) + probe);
+    system.field_jacobian(1, state.data(), field.data(), jacobian.data());
+    for (std::size_t i = 0; i < d; ++i)
+      steady[i] = steady[i] && field[i] != 0.0 && (before.empty() || field[i] == before[i]) &&
+                  std::all_of(jacobian.begin() + static_cast<std::ptrdiff_t>(i * d),
+                              jacobian.begin() + static_cast<std::ptrdiff_t>((i + 1) * d),
+                              [](double slope) { return slope == 0.0; });
+    before = field;
+  }
+  const auto found = std::find(steady.begin(), steady.end(), true);
+  return found == steady.end() ? -1 : static_cast<int>(found - steady.begin());
+}
+
+/// What to do where the grid leads to no equilibrium.
+std::string no_equilibrium_advice(const systems::System& system, const std::vector<std::vector<double>>& grid) {
+  if (system.structure().driven)
+    return "nothing rests at every phase of the drive near starts.fixed_points.grid: give the drive the amplitude 0 "
+           "and "
+           "let it move (continuation.free), or an orbit with starts.states";
+  if (const int steady = steady_coordinate(system, grid); steady >= 0)
+    return fmt::format(
+        "starts.fixed_points.grid leads to no equilibrium, and there is none: {} changes at the same rate everywhere. "
+        "If "
+        "it is the phase of a drive, let it be the last coordinate, an angle, and declare `structure.driven = true` "
+        "(docs/your_own_system.md); else give an orbit with starts.states",
+        system.info().state_names[static_cast<std::size_t>(steady)]);
+  return "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one";
+}
+
 /// What to do where a survey has found no family at all.
 std::string nothing_found_advice(const systems::System& system, bool left_out) {
   if (left_out) return "all their periods lie outside starts.sweep.period: make it wider, or `auto`";
@@ -117,7 +169,8 @@ std::string nothing_found_advice(const systems::System& system, bool left_out) {
            "starts.states";
   if (!system.structure().conservative())
     return "the system conserves nothing: its families are curves in a parameter, with `continuation: {free: ...}`";
-  return "none of the equilibria has small oscillations: let starts.fixed_points.grid lead to others";
+  return "none of the equilibria has small oscillations: let starts.fixed_points.grid lead to others, or give an orbit "
+         "with starts.states";
 }
 
 }  // namespace
@@ -213,7 +266,10 @@ Starts starts_of(const scene::Scene& scene, const systems::System& system) {
   if (scene.recurrences) starts.states.push_back(scene.recurrences->state);
   systems::require_identities(system, starts.equilibria, starts.states);
   const bool begins_at_equilibria = has_equilibrium_families(system);
-  if (!starts.given.empty() || (begins_at_equilibria && !starts.equilibria.empty())) return starts;
+  if (!starts.given.empty() || (begins_at_equilibria && !starts.equilibria.empty())) {
+    require_named(scene, system, starts.equilibria);
+    return starts;
+  }
   if (scene.recurrences)
     throw core::InputError(
         "starts.recurrences: the trajectory has no return: give it more time, longer periods or a "
@@ -224,11 +280,7 @@ Starts starts_of(const scene::Scene& scene, const systems::System& system) {
     throw core::InputError(
         "starts: no start is given: give starts.fixed_points.grid, values of each coordinate near an equilibrium, or "
         "an orbit with starts.states");
-  throw core::InputError(
-      system.structure().driven
-          ? "nothing rests at every phase of the drive near starts.fixed_points.grid: give the drive the amplitude 0 "
-            "and let it move (continuation.free), or an orbit with starts.states"
-          : "Newton's method finds no equilibrium from starts.fixed_points.grid: give start values nearer to one");
+  throw core::InputError(no_equilibrium_advice(system, scene.fixed_points.grid));
 }
 
 ExpectedEquilibrium expected_equilibrium(const systems::System& system, const std::vector<double>& point) {
@@ -326,8 +378,8 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
                                     ? fmt::format(" for T in [{:g}, {:g}]", found.period_from * system.scales().time,
                                                   found.period_to * system.scales().time)
                                     : "";
-      summary.remarks.push_back(
-          fmt::format("no small oscillations around {}{}", point_text(system, found.point), range));
+      summary.remarks.push_back(fmt::format("no small oscillations around {}{}{}", point_text(system, found.point),
+                                            range, leaves_open(system, found.point)));
     }
     if (!found.left_out.empty()) summary.remarks.push_back(left_out_text(scene, system, found));
     remark_resonances(system, found, summary);

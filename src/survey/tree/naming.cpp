@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "orbweaver/core/error.hpp"
+#include "orbweaver/starts/fixed_points.hpp"
 
 namespace orbweaver::survey {
 
@@ -18,16 +22,56 @@ constexpr double printed_as_zero = 1e-9;
 /// Of a point with more coordinates only those that are not 0 are told.
 constexpr std::size_t most_told = 4;
 
-bool is_named_point(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
+/// The largest difference in a coordinate that is given, angles modulo a turn.
+double distance(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
+  double most = 0.0;
   for (std::size_t i = 0; i < given.size(); ++i) {
-    double difference = point[i] - given[i];
-    if (system.structure().is_angle(i)) difference = std::remainder(difference, 2.0 * std::numbers::pi);
-    if (std::abs(difference) > same_place) return false;
+    const double difference = point[i] - given[i];
+    most = std::max(most, std::abs(system.structure().is_angle(i) ? std::remainder(difference, 2.0 * std::numbers::pi)
+                                                                  : difference));
   }
-  return true;
+  return most;
+}
+
+bool is_named_point(const systems::System& system, const std::vector<double>& point, const std::vector<double>& given) {
+  return distance(system, point, given) <= same_place;
+}
+
+/// As a key of starts.fixed_points.names: with digits enough to be taken for the same place.
+std::string key_of(const systems::System& system, const std::vector<double>& point) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    const double unit = system.structure().is_angle(i) ? 180.0 / std::numbers::pi : system.scales().coordinate(i);
+    values.push_back(fmt::format("{:.10g}", std::abs(point[i]) < printed_as_zero ? 0.0 : point[i] * unit));
+  }
+  return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
 }  // namespace
+
+void require_named(const scene::Scene& scene, const systems::System& system,
+                   const std::vector<std::vector<double>>& equilibria) {
+  for (const scene::FixedPoints::Names& entry : scene.fixed_points.names) {
+    const auto away = [&](const std::vector<double>& point) { return distance(system, point, entry.point); };
+    const auto is_meant = [&](const std::vector<double>& point) { return away(point) <= same_place; };
+    if (std::any_of(equilibria.begin(), equilibria.end(), is_meant)) continue;
+    std::vector<double> at = entry.point;
+    at.resize(static_cast<std::size_t>(system.dimension()), 0.0);
+    std::vector<std::vector<double>> known = equilibria;
+    if (auto near = starts::fixed_point_near(system, at, std::numeric_limits<double>::infinity())) {
+      if (is_meant(*near)) continue;  // the grid does not lead to it
+      known.push_back(*std::move(near));
+    }
+    const auto nearest =
+        std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) { return away(a) < away(b); });
+    throw core::InputError(
+        fmt::format("starts.fixed_points.names: expected places of equilibria, got {} ({}), where none is: {}",
+                    key_of(system, entry.point), fmt::join(entry.names, ", "),
+                    nearest == known.end() ? "remove the names, or correct their place"
+                                           : "the nearest known is " + key_of(system, *nearest) +
+                                                 ": give that place if it is meant, or remove the names"));
+  }
+}
 
 std::size_t names_given(const scene::Scene& scene, const systems::System& system, const std::vector<double>& point) {
   std::size_t most = 0;

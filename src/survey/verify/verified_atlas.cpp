@@ -43,6 +43,7 @@ std::shared_ptr<const systems::System> system_of(const archive::Header& header, 
   auto system = scene::bound_system(scene.system);
   const bool fits =
       header.state_names == system->info().state_names && header.winding_names == system->winding_names() &&
+      (header.winding_coordinates.empty() || header.winding_coordinates == system->structure().angles) &&
       header.pairs == system->structure().pairs() &&
       archive::has_complex_stability(header) == (!system->structure().symplectic || system->structure().pairs() > 1);
   if (!fits)

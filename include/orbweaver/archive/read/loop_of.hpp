@@ -13,4 +13,8 @@ namespace orbweaver::archive {
 /// `angles` do not fit the header, InputError where the file holds no valid loop there.
 [[nodiscard]] loop::Loop loop_of(const Archive& atlas, std::size_t orbit, const std::vector<int>& angles);
 
+/// The same with the coordinates that the archive names. Throws InputError where it names none though some wind: it is
+/// from before format_minor 11.
+[[nodiscard]] loop::Loop loop_of(const Archive& atlas, std::size_t orbit);
+
 }  // namespace orbweaver::archive

@@ -169,7 +169,8 @@ struct Header {
   std::string scene;  ///< the YAML text
   std::vector<std::string> state_names;
   std::vector<std::string> winding_names;
-  int pairs = 0;  ///< width of the stability columns
+  std::vector<int> winding_coordinates;  ///< index of each one's coordinate; empty before format_minor 11
+  int pairs = 0;                         ///< width of the stability columns
   bool symplectic = true;
   // Empty in files with format_minor 0.
   std::string system;

@@ -16,7 +16,7 @@ inline constexpr int format_version = 1;
 /// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
 /// /sections is filled. 5: the parameter at crossings and findings. 6: /loci. 7: /equilibria. 8:
 /// `log_volume` of /orbits. 9: the attributes `unit` and `meaning` of datasets. 10:
-/// `birth_arclength` of /families. 11: the errors of places of /crossings.
+/// `birth_arclength` of /families. 11: the errors of places of /crossings, winding_coordinates.
 inline constexpr int format_minor = 11;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
@@ -32,6 +32,8 @@ inline constexpr int volumes_since = 8;
 inline constexpr int births_since = 10;
 /// The first that says how well places of crossings are known.
 inline constexpr int place_errors_since = 11;
+/// The first that says which coordinates the winding numbers belong to.
+inline constexpr int winding_coordinates_since = 11;
 
 enum class ColumnType { integer, real, text };
 

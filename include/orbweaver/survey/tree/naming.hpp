@@ -20,6 +20,11 @@ namespace orbweaver::survey {
 [[nodiscard]] std::size_t names_given(const scene::Scene& scene, const systems::System& system,
                                       const std::vector<double>& point);
 
+/// Throws InputError for names of a place at which no equilibrium lies, `equilibria` being those that are known: they
+/// are of another system, or of other parameters.
+void require_named(const scene::Scene& scene, const systems::System& system,
+                   const std::vector<std::vector<double>>& equilibria);
+
 /// The text, cut to what the archive's text columns hold (4096 bytes) with room to spare.
 [[nodiscard]] std::string limited(std::string text);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,12 @@ struct Undeclared {
 /// or, where there are none, about the origin and the states that the scene gives.
 [[nodiscard]] Undeclared undeclared(const systems::System& system, const std::vector<std::vector<double>>& equilibria,
                                     const std::vector<std::vector<double>>& states);
+
+/// Of a trajectory that closes: in how many directions its neighbours close too, after a time that may differ, beyond
+/// those along the orbit and one for each quantity that the structure names; to first order, so that orbits of folds
+/// and branch points have such directions as well. 0 where orbits are isolated. `tolerance`: of the integration.
+/// Throws NumericalError where the trajectory cannot be integrated.
+[[nodiscard]] int undeclared_directions(const systems::System& system, std::span<const double> state, double period,
+                                        double tolerance);
 
 }  // namespace orbweaver::survey
