@@ -16,6 +16,7 @@ namespace orbweaver::bifurcation {
 namespace {
 
 using continuation::Orbit;
+using continuation::same_within;
 
 /// How far outside the chord's ends a projection may lie, and how far from the chord an orbit between its ends can be,
 /// in parts of the chord. Wide on purpose: further corrections decide, these only end hopeless ones.
@@ -37,8 +38,6 @@ constexpr double far_off = 2.0;
 /// In parts of the distance between two orbits, by how much a parameter may leave the range between theirs. Not
 /// measured.
 constexpr double out_of_range = 0.5;
-/// Roundings of the coordinates by which two computations of one orbit may differ. Not measured.
-constexpr double roundings = 1e3;
 
 bool is_between(double a, double b, double x, double widening) {
   const double margin = 0.5 * std::abs(b - a) + widening;
@@ -236,11 +235,6 @@ bool may_lie_between(const Orbit& a, const Orbit& b, const Orbit& x, double wide
          between(parameter(a), parameter(b), parameter(x),
                  std::max(widening * std::abs(parameter(x)), out_of_range * loop::mean_distance(a.loop, b.loop))) &&
          between(a.action, b.action, x.action, widening * std::abs(x.action));
-}
-
-double same_within(const loop::Loop& loop, double tolerance) {
-  return std::max(tolerance * (1.0 + loop::rms_amplitude(loop)),
-                  roundings * std::numeric_limits<double>::epsilon() * loop::rms_size(loop));
 }
 
 bool same_orbit(const systems::System& system, const loop::Loop& a, const loop::Loop& b, double tolerance) {

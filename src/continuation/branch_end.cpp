@@ -22,11 +22,6 @@ namespace {
 constexpr int first_orbits = 3;
 /// The end at a fixed point, of the first orbit's amplitude and the start's: steps there are of the amplitude's size.
 constexpr double vanishing_amplitude = 0.5;
-/// Of an amplitude: what is nearer than this is not near by its size alone.
-constexpr double by_size = 0.5;
-/// A branch has come back only after so many of its steps: it cannot turn on less. Not measured; circles are of some
-/// ten steps.
-constexpr double way_around = 3.0;
 /// How often the period must have grown, and how little of its range the energy may have moved over `period_window`,
 /// where the period diverges. Not measured; both decide only how an end is called.
 constexpr double grown_period = 2.0;
@@ -54,14 +49,18 @@ bool collides(const Frontier& frontier, const GuardTrace& guard) {
          frontier.orbit.loop.cutoff >= grown_cutoff * frontier.first.cutoff;
 }
 
-/// Orbits of one parameter value and one period, as a system has that conserves something there.
-bool stays(const Frontier& frontier) {
+/// Whether the branch moves along orbits of one parameter value and one period, as a system has that conserves
+/// something there. One that comes back to the values of its first orbit has moved.
+bool stays(const Frontier& frontier, std::size_t scalars_at) {
   const loop::Loop& first = frontier.first;
-  const loop::Loop& last = frontier.orbit.loop;
-  return !first.parameters.empty() &&
-         std::abs(last.parameters.front() - first.parameters.front()) <
-             unmoved * (1.0 + std::abs(first.parameters.front())) &&
-         std::abs(last.period - first.period) < unmoved * first.period;
+  if (first.parameters.empty()) return false;
+  const double parameter = first.parameters.front();
+  return std::all_of(frontier.points.end() - std::min<std::ptrdiff_t>(first_orbits, std::ssize(frontier.points)),
+                     frontier.points.end(), [&](const TracePoint& point) {
+                       const double* scalars = point.values.data() + scalars_at;
+                       return std::abs(scalars[0] - first.period) < unmoved * first.period &&
+                              std::abs(scalars[1] - parameter) < unmoved * (1.0 + std::abs(parameter));
+                     });
 }
 
 std::optional<Ending> collision_of(const Frontier& frontier, const systems::System& system, const std::string& detail) {
@@ -88,17 +87,15 @@ int guard_number(const systems::Structure& structure, const std::string& name) {
   return static_cast<int>(found - guards.begin());
 }
 
-/// Neither T nor the amplitude can be further apart than the loops are. Orbits around one equilibrium are near each
-/// other by their size alone.
-bool may_have_come_back(const Frontier& frontier, const loop::Loop& loop, double amplitude) {
+bool may_have_come_back(const Frontier& frontier, const Trial& trial, double reach) {
   if (frontier.orbit.step < first_orbits) return false;
-  const double extent = extent_of(loop.winding, amplitude);
-  const double first = extent_of(frontier.first.winding, frontier.first_amplitude);
-  const double most = std::min(frontier.orbit.arclength / way_around, by_size * std::min(extent, first));
-  const double least = std::max(std::abs(loop.period / frontier.first.period - 1.0), std::abs(extent - first));
-  if (!(least < most)) return false;  // without a distance between loops, which costs as much as a corrector's step
-  const double near = arclength_between(frontier.orbit.loop, loop);
-  return least < near && near < most;
+  const loop::Loop& first = frontier.first;
+  double least = std::max(
+      std::abs(trial.loop.period / first.period - 1.0),
+      std::abs(extent_of(trial.loop.winding, trial.amplitude) - extent_of(first.winding, frontier.first_amplitude)));
+  for (std::size_t n = 0; n < first.parameters.size(); ++n)
+    least = std::max(least, std::abs(trial.loop.parameters[n] - first.parameters[n]));
+  return least < reach;
 }
 
 /// By samples in time. A mean over time counts what passes fast for less than one over s, by the density at most.
@@ -113,7 +110,8 @@ bool is_far_off(const systems::Structure& structure, const loop::Loop& first, co
   return square > beside_by_samples * most * (1.0 + beside * beside) * step;
 }
 
-std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system, const Options& options) {
+std::optional<Ending> end_at(const Frontier& frontier, std::size_t scalars_at, const systems::System& system,
+                             const Options& options) {
   const systems::Structure& structure = system.structure();
   const systems::Scales& units = system.scales();
   const Orbit& orbit = frontier.orbit;
@@ -136,7 +134,7 @@ std::optional<Ending> end_at(const Frontier& frontier, const systems::System& sy
   if (frontier.threshold > worse_than_asked * options.corrector.tolerance)
     if (auto collision = collision_of(frontier, system, fmt::format("rounding leaves {:.1e}", orbit.loss_rms)))
       return collision;
-  if (stays(frontier))
+  if (stays(frontier, scalars_at))
     return Ending{
         EndReason::undecided,
         fmt::format("T and {} stay at {:.9g} and {:.9g}: its orbits are not isolated; another start "

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "orbweaver/continuation/branch.hpp"
+#include "point_problem.hpp"
 
 /// When a branch ends, from where it stands (docs/mathematics.md, "Ends"). `units` are those of its numbers, which
 /// texts tell in the units of the scene.
@@ -20,17 +21,18 @@ inline constexpr double period_window = 1.1;
 /// clearly (docs/mathematics.md, "Ends").
 inline constexpr std::size_t earlier_guards = 5;
 
-/// A cheap look: whether the branch's next loop may lie within a step of its first orbit, all around a circle.
-[[nodiscard]] bool may_have_come_back(const Frontier& frontier, const loop::Loop& loop, double amplitude);
+/// A cheap look: whether the branch's next orbit may lie within `reach` of its first one, all around a circle. Neither T
+/// nor the amplitude nor a parameter can be further apart than the loops are.
+[[nodiscard]] bool may_have_come_back(const Frontier& frontier, const Trial& trial, double reach);
 
 /// Another, dearer: whether no time shift of the first orbit lies on the step to `loop`, or less than this part of the
 /// step's length beside it. `step`: its squared length, a mean over s.
 [[nodiscard]] bool is_far_off(const systems::Structure& structure, const loop::Loop& first, const loop::Loop& loop,
                               double beside, double step);
 
-/// The end that the last orbit is; none if the branch goes on.
-[[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, const systems::System& system,
-                                           const Options& options);
+/// The end that the last orbit is; none if the branch goes on. `scalars_at`: in the values of the frontier's points.
+[[nodiscard]] std::optional<Ending> end_at(const Frontier& frontier, std::size_t scalars_at,
+                                           const systems::System& system, const Options& options);
 
 /// The end where the first orbit lies beyond the scene's limits already; none if it does not.
 [[nodiscard]] std::optional<Ending> beyond_limits(const systems::System& system, const loop::Loop& first, double period,

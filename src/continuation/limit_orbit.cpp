@@ -19,12 +19,6 @@ constexpr double position_width = 1e-14;
 /// An orbit whose quantity is so near to a limit, in parts of the size + |limit|, lies on it.
 constexpr double on_limit = 1e-13;
 
-OnLimit failure(const Passed& passed, std::string_view why) {
-  return {std::nullopt,
-          {EndReason::failure, fmt::format("no orbit at the {} {} = {:.6g}: {}", name_of(passed.reason), passed.symbol,
-                                           passed.limit * passed.unit, why)}};
-}
-
 /// Where the polynomial through the last points and the one beyond has the limit.
 Prediction predicted_at_scalar(const Stepper& stepper, const Passed& passed, std::size_t at) {
   std::vector<TracePoint> points = stepper.frontier().points;
@@ -42,17 +36,26 @@ Prediction predicted_at_scalar(const Stepper& stepper, const Passed& passed, std
 
 }  // namespace
 
+OnLimit failure(const Passed& passed, std::string_view why) {
+  return {std::nullopt,
+          {EndReason::failure, fmt::format("no orbit at the {} {} = {:.6g}: {}", name_of(passed.reason), passed.symbol,
+                                           passed.limit * passed.unit, why)}};
+}
+
 OnLimit orbit_at_scalar(Stepper& stepper, const Passed& passed, int scalar) {
-  Prediction prediction =
-      predicted_at_scalar(stepper, passed, stepper.problem().scalars_at() + static_cast<std::size_t>(scalar));
+  const std::size_t at = stepper.problem().scalars_at() + static_cast<std::size_t>(scalar);
+  OnLimit found = orbit_from(stepper, passed, predicted_at_scalar(stepper, passed, at), scalar);
+  if (found.trial)
+    found.trial->values[stepper.problem().scalars_at() + static_cast<std::size_t>(scalar)] = passed.limit;
+  return found;
+}
+
+OnLimit orbit_from(Stepper& stepper, const Passed& passed, Prediction prediction, std::optional<int> held_scalar) {
   stepper.begin();
   while (true) {
-    Trial trial = stepper.correct(prediction, scalar);
-    if (!stepper.needs_more_harmonics(trial)) {
-      if (!trial.is_orbit) return failure(passed, trial.reason);
-      trial.values[stepper.problem().scalars_at() + static_cast<std::size_t>(scalar)] = passed.limit;
-      return {std::move(trial), {}};
-    }
+    Trial trial = stepper.correct(prediction, held_scalar);
+    if (!stepper.needs_more_harmonics(trial))
+      return trial.is_orbit ? OnLimit{std::move(trial), {}} : failure(passed, trial.reason);
     const std::optional<PointProblem::Transfer> finer = stepper.refine(trial);
     if (!finer)
       return {std::nullopt,

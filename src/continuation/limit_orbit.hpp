@@ -29,6 +29,13 @@ struct Passed {
   double size = 1.0;  ///< of what is limited, where the limit itself is smaller: how near to it an orbit lies on it
 };
 
+/// None, with why.
+[[nodiscard]] OnLimit failure(const Passed& passed, std::string_view why);
+
+/// The orbit that a prediction is corrected to, with as many harmonics as it needs: the branch's points have those then.
+[[nodiscard]] OnLimit orbit_from(Stepper& stepper, const Passed& passed, Prediction prediction,
+                                 std::optional<int> held_scalar = std::nullopt);
+
 /// The orbit between the last point and the one beyond whose scalar of this number is the limit, exactly.
 [[nodiscard]] OnLimit orbit_at_scalar(Stepper& stepper, const Passed& passed, int scalar);
 

@@ -39,6 +39,8 @@ namespace {
 /// What harmonics in time may leave out of a distance between orbits: a closed family is told by steps, a closed locus
 /// by 1e-6 of its length.
 constexpr double left_out = 1e-10;
+/// Roundings of the coordinates by which two computations of one orbit may differ. Not measured.
+constexpr double roundings = 1e3;
 
 double with_scalars(double distance, const loop::Loop& from, const loop::Loop& to) {
   core::require(from.parameters.size() == to.parameters.size(), "a distance between loops of different families");
@@ -62,6 +64,11 @@ double distance_between_orbits(const systems::System& system, const loop::Loop& 
   for (const loop::ShiftMinimum& minimum : loop::shift_minima(y, x, angles))
     least = std::min(least, loop::rms_size(loop::difference_at(y, x, angles, minimum.shift)));
   return with_scalars(least, from, to);
+}
+
+double same_within(const loop::Loop& loop, double tolerance) {
+  return std::max(tolerance * (1.0 + loop::rms_amplitude(loop)),
+                  roundings * std::numeric_limits<double>::epsilon() * loop::rms_size(loop));
 }
 
 double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to) {

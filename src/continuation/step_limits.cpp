@@ -18,9 +18,9 @@ namespace orbweaver::continuation {
 
 namespace {
 
-/// How far beside a step, in parts of it, the first orbit may lie: a step that turns by 0.3 rad leaves its chord by a
-/// twentieth.
-constexpr double beside_closing_step = 0.2;
+/// Where the first orbit lies on a step is off by what its phase is beside the step's end: each correction from beside it
+/// takes away most of the distance, unless it is another orbit (bifurcation/identity.cpp has the same).
+constexpr double phase_progress = 0.3;
 
 }  // namespace
 
@@ -29,33 +29,52 @@ void StepLimits::forget() {
   _frontier.on_guard_limit = -1;
 }
 
-/// Of a branch that comes back to its first orbit on a step of `length` to `trial`: that orbit, where its last one is
-/// to lie. Between them nothing would be looked for, and beyond it everything twice.
-std::optional<Trial> StepLimits::closing_orbit(const Trial& trial, double length) {
-  if (!may_have_come_back(_frontier, trial.loop, trial.amplitude)) return std::nullopt;
+/// Of a branch that may have come back to its first orbit on a step of `length` to `trial`: the orbit of the step at
+/// the place of the first, where it is that one: between them nothing would be looked for, and beyond it everything
+/// twice. None where the branch goes on.
+std::optional<OnLimit> StepLimits::closing_orbit(const Trial& trial, double length) {
   const std::vector<double>& before = _stepper.last();
+  // What nowhere turns further from its chord lies in the triangle over it that does at both ends.
+  const double beside = 0.5 * std::tan(std::acos(_options.least_cosine));
+  const double reach = std::hypot(1.0, beside);
+  if (!may_have_come_back(_frontier, trial, reach * _problem.distance(trial.values, before))) return std::nullopt;
   const double step = _problem.product(trial.values, before, trial.values, before);
-  if (is_far_off(_system.structure(), _frontier.first, trial.loop, beside_closing_step, step)) return std::nullopt;
-  const loop::Loop first =
-      loop::aligned(_frontier.first, loop::align_in_time(_system.structure(), _frontier.first, trial.loop));
-  const auto values_there = [&] { return _problem.from_loop(under_map(first, _problem.resolution().time_map)); };
-  const std::vector<double> there = values_there();
-  const double way = _problem.product(there, before, there, before);
-  const double along = _problem.product(there, before, trial.values, before) / step;
-  if (!(along > 0.0 && along <= 1.0) || way - along * along * step > beside_closing_step * beside_closing_step * step)
-    return std::nullopt;
-  const auto past = [&](const Trial& other) {  // -1 at the last orbit, 0 at the first
-    const std::vector<double> at = values_there();
-    const std::vector<double>& from = _stepper.last();
-    return _problem.product(other.values, at, at, from) / _problem.product(at, from, at, from);
+  if (is_far_off(_system.structure(), _frontier.first, trial.loop, beside, step)) return std::nullopt;
+  const auto first_beside = [&](const loop::Loop& other) {
+    const loop::Alignment alignment = loop::align_in_time(_system.structure(), _frontier.first, other);
+    return _problem.from_loop(under_map(loop::aligned(_frontier.first, alignment), _problem.resolution().time_map));
   };
-  if (!(past(trial) > 0.0)) return std::nullopt;
-  _frontier.has_come_back = true;
-  // The crossing at which a family was born lies beside its first orbit: there none may converge, and the circle's last
-  // orbit stays beyond.
-  return orbit_at_value(_stepper, {EndReason::closed_loop, "part of the step", 0.0, length, trial, 1.0, 1.0}, -1.0,
-                        past)
-      .trial;
+  const double off_step = beside * beside * step;
+  const auto square = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return _problem.product(a, b, a, b);
+  };
+  std::vector<double> there = first_beside(trial.loop);
+  double along = _problem.product(there, before, trial.values, before) / step;
+  if (!(along > 0.0 && along <= reach) || square(there, before) - along * along * step > off_step) return std::nullopt;
+  const Passed passed{EndReason::closed_loop, "T", _frontier.first.period, length, trial, _system.scales().time};
+  const int size = _problem.resolution().size;
+  Prediction prediction{before, trial.values, 1};
+  for (std::size_t n = 0; n < before.size(); ++n) prediction.tangent[n] -= before[n];
+  double least = std::numeric_limits<double>::infinity();
+  while (true) {
+    for (std::size_t n = 0; n < there.size(); ++n) prediction.values[n] += along * prediction.tangent[n];
+    OnLimit closing = orbit_from(_stepper, passed, prediction);
+    if (!closing.trial) return closing;
+    const double distance = distance_between_orbits(_system, _frontier.first, closing.trial->loop);
+    const bool is_first = distance <= same_within(_frontier.first);
+    // A shorter step tells.
+    if (!is_first &&
+        (_problem.resolution().size != size || square(closing.trial->values, prediction.values) > off_step))
+      return failure(passed, "another orbit is beside it");
+    if (_problem.resolution().size != size || !(distance < phase_progress * least)) {
+      _frontier.has_come_back = is_first;
+      return is_first ? std::optional(std::move(closing)) : std::nullopt;
+    }
+    least = distance;
+    there = first_beside(closing.trial->loop);
+    prediction.values = std::move(closing.trial->values);
+    along = _problem.product(there, prediction.values, trial.values, before) / step;
+  }
 }
 
 bool StepLimits::is_beyond_limits(const Trial& trial) const {
@@ -100,8 +119,9 @@ std::optional<double> StepLimits::turning_beyond_limit(const Trial& trial) const
 /// The last orbit of a branch lies on the scene's limit, not beyond it; where a step passes two, on the first.
 OnLimit StepLimits::within(const Trial& passed, double length) {
   constexpr int period = 0;  // among the scalars
-  const std::optional<Trial> closing = closing_orbit(passed, length);
-  const Trial& trial = closing ? *closing : passed;
+  const std::optional<OnLimit> closing = closing_orbit(passed, length);
+  if (closing && !closing->trial) return *closing;
+  const Trial& trial = closing ? *closing->trial : passed;
   const double value = energy_of(_system, trial.loop);
   const bool is_late = scalar(trial, period) > _options.period_limit;
   const bool is_outside = is_beyond_energies(value);

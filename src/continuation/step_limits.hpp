@@ -39,7 +39,7 @@ class StepLimits {
     return continuation::is_beyond_parameters(scalar(trial, parameter), _options);
   }
   [[nodiscard]] bool is_beyond_limits(const Trial& trial) const;
-  [[nodiscard]] std::optional<Trial> closing_orbit(const Trial& trial, double length);
+  [[nodiscard]] std::optional<OnLimit> closing_orbit(const Trial& trial, double length);
   [[nodiscard]] std::optional<double> turning_beyond_limit(const Trial& trial) const;
   [[nodiscard]] OnLimit within_guards(Trial trial, double length);
 

@@ -72,7 +72,7 @@ std::optional<Orbit> Tracer::advance() {
   if (_ending) return std::nullopt;
   _limits.begin();
   if (!begun()) return _start.base_is_orbit ? base_orbit() : first_orbit();
-  _ending = end_at(_frontier, *_system, _options);
+  _ending = end_at(_frontier, _problem->scalars_at(), *_system, _options);
   return _ending ? std::nullopt : next_on_family();
 }
 

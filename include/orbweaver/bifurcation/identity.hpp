@@ -14,18 +14,12 @@ namespace orbweaver::bifurcation {
 struct IdentityOptions {
   corrector::Options corrector{};
   int cutoff_to = 4096;
-  /// Distance of the same orbit, relative to 1 + rms amplitude of the loop (`same_within`). The first orbits of twins,
-  /// the nearest families that were compared, are 0.01 apart (docs/mathematics.md, "Identity").
-  double tolerance = 1e-6;
+  double tolerance = continuation::same_orbit_tolerance;  ///< as `continuation::same_within` takes it
   /// Of the ranges of period, energy and action between neighbours, relative to their values: a first look, which may
   /// only pass too many.
   double widening = 1e-2;
   bool keeps_repetitions = false;  ///< an orbit that goes around several times is not taken for the one it goes around
 };
-
-/// How far apart two computations of one orbit may be: `tolerance` of 1 + the rms amplitude, wherever the origin lies;
-/// where the coordinates leave fewer digits than that, what rounding of them is allowed.
-[[nodiscard]] double same_within(const loop::Loop& loop, double tolerance = IdentityOptions{}.tolerance);
 
 /// What a comparison of an orbit with a family found.
 struct Comparison {

@@ -51,7 +51,16 @@ struct Orbit {
 /// The same between any two orbits that wind alike, wherever they begin: the least over the time shifts of one.
 [[nodiscard]] double distance_between_orbits(const systems::System& system, const loop::Loop& from,
                                              const loop::Loop& to);
-/// The same in the units of the scene, for loops told in the system's scales: the archive's arclength.
+
+/// Distance of two computations of one orbit, relative to 1 + rms amplitude of the loop. The first orbits of twins, the
+/// nearest families that were compared, are 0.01 apart (docs/mathematics.md, "Identity").
+inline constexpr double same_orbit_tolerance = 1e-6;
+
+/// How far apart two computations of one orbit may be: `tolerance` of 1 + the rms amplitude, wherever the origin lies;
+/// where the coordinates leave fewer digits than that, what rounding of them is allowed.
+[[nodiscard]] double same_within(const loop::Loop& loop, double tolerance = same_orbit_tolerance);
+
+/// sqrt(mean |dz|^2 + (dT/T)^2 + |dp|^2) in the units of the scene, for loops told in the system's scales: the archive's arclength.
 [[nodiscard]] double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to);
 
 }  // namespace orbweaver::continuation

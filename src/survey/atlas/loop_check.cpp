@@ -90,7 +90,7 @@ LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
   const continuation::Orbit orbit = orbit_of(x.own, x.family, x.orbit, *_system);
   const continuation::Orbit a = orbit_of(x.other, x.beside, x.segment, *_system);
   const continuation::Orbit b = orbit_of(x.other, x.beside, x.segment + 1, *_system);
-  const double allowed = bifurcation::same_within(orbit.loop, options.tolerance);
+  const double allowed = continuation::same_within(orbit.loop, options.tolerance);
   // Where both were followed with the same steps it is one of the two, and nothing need be corrected.
   for (const continuation::Orbit* node : {&a, &b}) {
     const double in_period = std::abs(orbit.loop.period / node->loop.period - 1.0);
@@ -110,7 +110,7 @@ bool LoopCheck::is_on_curve(const OrbitBeside& x) const {
   const systems::Structure& system = _system->structure();
   const loop::Isotropy isotropy = loop::isotropy_of(system, x.beside.isotropy);
   const loop::Loop orbit = orbit_of(x.own, x.family, x.orbit, *_system).loop;
-  const double allowed = bifurcation::same_within(orbit);
+  const double allowed = continuation::same_within(orbit);
   const std::size_t symmetries = symmetries_of(system, orbit);
   for (const std::size_t node : {x.segment, x.segment + 1}) {
     const loop::Loop known = orbit_of(x.other, x.beside, node, *_system).loop;
@@ -212,7 +212,7 @@ LoopCheck::Between LoopCheck::between_orbits(const continuation::Orbit& orbit, c
   const loop::Isotropy isotropy = loop::isotropy_of(system, beside.isotropy);
   continuation::Orbit a = orbit_of(tree, beside, segment, *_system);
   continuation::Orbit b = orbit_of(tree, beside, segment + 1, *_system);
-  const double allowed = bifurcation::same_within(orbit.loop, options.tolerance);
+  const double allowed = continuation::same_within(orbit.loop, options.tolerance);
   const double to_a = loop::align(system, orbit.loop, a.loop).distance;
   const double to_b = loop::align(system, orbit.loop, b.loop).distance;
   if (to_a + to_b > longest_way * loop::mean_distance(a.loop, b.loop))

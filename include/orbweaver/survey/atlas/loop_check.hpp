@@ -17,7 +17,7 @@ namespace orbweaver::survey {
 struct LoopAnswer {
   bool same = false;
   double distance = 0.0;  ///< from the family, as bifurcation::Comparison measures it
-  double allowed = 0.0;   ///< bifurcation::same_within
+  double allowed = 0.0;   ///< continuation::same_within
   std::string detail;
   bool decided = true;  ///< as in bifurcation::Comparison
 };
