@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include <boost/math/interpolators/makima.hpp>
@@ -10,6 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/grid/fourier.hpp"
 #include "orbweaver/numerics/two_pi.hpp"
 
 namespace orbweaver::starts {
@@ -18,8 +20,8 @@ namespace {
 
 using numerics::two_pi;
 
-/// States that a spline is evaluated at.
-constexpr std::size_t samples_of_spline = 4 * static_cast<std::size_t>(loop::time_sample_count);
+/// Samples, even in time, of a curve: where they resolve it, the branch finds its own time map.
+constexpr int samples_of_guess = 4 * loop::time_sample_count;
 /// Of a guess's harmonics, relative to its size: smaller ones are left out.
 constexpr double left_out = 1e-9;
 /// And those that are this part of what the trajectory misses itself by: its kink has harmonics without end, which no
@@ -30,10 +32,25 @@ constexpr double same_time = 1e-6;
 /// Neighbours that a spline's slopes are made from, to each side.
 constexpr std::size_t neighbours = 3;
 
-}  // namespace
+/// A loop with all harmonics that its samples have, and what a guess leaves out of them.
+struct Sampled {
+  loop::Loop loop;
+  double left_out = 0.0;
 
-loop::Loop loop_through(const systems::Structure& structure, std::vector<std::vector<double>> states, double period) {
-  core::require(states.size() > 4, "a loop takes four states and the one at which it closes");
+  [[nodiscard]] bool is_resolved() const { return loop::tail(loop) <= left_out; }
+  /// Without the harmonics that are left out.
+  [[nodiscard]] loop::Loop shortened() const {
+    int cutoff = loop.cutoff;
+    while (loop::previous_cutoff(cutoff) < cutoff &&
+           loop::mean_distance(loop, loop::with_cutoff(loop, loop::previous_cutoff(cutoff))) < left_out)
+      cutoff = loop::previous_cutoff(cutoff);
+    return loop::with_cutoff(loop, loop::allowed_cutoff_at_least(cutoff));
+  }
+};
+
+/// From states at equidistant s, the last one where the loop closes.
+Sampled sampled(const systems::Structure& structure, const std::vector<std::vector<double>>& states, double period,
+                const loop::TimeMap& map) {
   const std::size_t d = states.front().size();
   const std::size_t count = states.size() - 1;
   loop::TimeSamples samples;
@@ -42,25 +59,60 @@ loop::Loop loop_through(const systems::Structure& structure, std::vector<std::ve
   samples.period = period;
   samples.states.resize(d * count);
   samples.winding.assign(d, 0.0);
+  std::vector<double> s;
+  for (std::size_t j = 0; j < count; ++j) s.push_back(two_pi * static_cast<double>(j) / static_cast<double>(count));
+  const std::vector<double> phases = map.phases(s);
   double missed = 0.0;
   for (std::size_t i = 0; i < d; ++i) {
     const double gap = states[count][i] - states[0][i];
     if (structure.is_angle(i)) samples.winding[i] = std::round(gap / two_pi);
     missed = std::hypot(missed, gap - two_pi * samples.winding[i]);
     for (std::size_t j = 0; j < count; ++j)
-      samples.states[i * count + j] = states[j][i] - static_cast<double>(j) / static_cast<double>(count) * gap;
+      samples.states[i * count + j] =
+          states[j][i] - phases[j] / two_pi * (gap - two_pi * samples.winding[i]) - samples.winding[i] * s[j];
   }
-  loop::Loop out = loop::interpolant(samples);
-  const double allowed = std::max(left_out * loop::rms_amplitude(out), left_out_of_gap * missed);
-  int cutoff = out.cutoff;
-  while (loop::previous_cutoff(cutoff) < cutoff &&
-         loop::mean_distance(out, loop::with_cutoff(out, loop::previous_cutoff(cutoff))) < allowed)
-    cutoff = loop::previous_cutoff(cutoff);
-  return loop::with_cutoff(out, loop::allowed_cutoff_at_least(cutoff));
+  Sampled out{loop::interpolant(samples)};
+  out.loop.time_map = map;
+  out.left_out = std::max(left_out * loop::rms_amplitude(out.loop), left_out_of_gap * missed);
+  return out;
 }
 
-loop::Loop loop_through(const systems::Structure& structure, const std::vector<double>& times,
-                        std::vector<std::vector<double>> states, double period) {
+/// At so many times of a curve as s runs under the map.
+Sampled sampled(const systems::Structure& structure, const GuessCurve& curve, const loop::TimeMap& map, int count) {
+  std::vector<double> s;
+  for (int j = 0; j < count; ++j) s.push_back(two_pi * j / count);
+  std::vector<std::vector<double>> states;
+  for (const double phase : map.phases(s)) states.push_back(curve.state(curve.period * phase / two_pi));
+  states.push_back(curve.state(curve.period));
+  return sampled(structure, states, curve.period, map);
+}
+
+}  // namespace
+
+loop::Loop loop_through(const systems::Structure& structure, const std::vector<std::vector<double>>& states,
+                        double period) {
+  core::require(states.size() > 4, "a loop takes four states and the one at which it closes");
+  return sampled(structure, states, period, {}).shortened();
+}
+
+loop::Loop loop_through(const systems::Structure& structure, const GuessCurve& curve) {
+  Sampled out = sampled(structure, curve, {}, samples_of_guess);
+  if (out.is_resolved()) return out.shortened();
+  const loop::TimeMap map = map_to_motion(curve);
+  double DBGs=0; for(std::size_t q=1;q<curve.times.size();++q) DBGs+=0.5*(curve.rates[q]+curve.rates[q-1])*(curve.times[q]-curve.times[q-1]);
+
+  int count = loop::FourierGrid::nodes_at_least(std::max(samples_of_guess, static_cast<int>(curve.times.size())));
+  do {
+    out = sampled(structure, curve, map, count);
+    count = loop::FourierGrid::nodes_at_least(2 * count);
+  } while (!out.is_resolved() && count <= static_cast<int>(most_nodes));
+  fprintf(stderr,"DBG mesh %zu S %g map %zu K %d -> %d left %g tail %g\n",curve.times.size(),DBGs,map.coefficients.size()/2,out.loop.cutoff,out.shortened().cutoff,out.left_out,loop::tail(out.loop));
+  return out.shortened();
+}
+
+GuessCurve curve_through(const systems::System& system, const std::vector<double>& times,
+                         std::vector<std::vector<double>> states, double period) {
+  const systems::Structure& structure = system.structure();
   core::require(times.size() == states.size() && times.size() > neighbours, "a spline takes four states at least");
   const std::size_t d = states.front().size();
   // An angle runs on from one to the next.
@@ -78,7 +130,8 @@ loop::Loop loop_through(const systems::Structure& structure, const std::vector<d
   } else {
     for (std::size_t i = 0; i < d; ++i) closing[i] = next_to(states.front()[i], states.back()[i], i);
   }
-  std::vector<std::vector<double>> even(samples_of_spline + 1, std::vector<double>(d));
+  using Spline = boost::math::interpolators::makima<std::vector<double>>;
+  auto splines = std::make_shared<std::vector<Spline>>();
   for (std::size_t i = 0; i < d; ++i) {
     const double gap = closing[i] - states.front()[i];
     std::vector<double> x, y;
@@ -89,11 +142,14 @@ loop::Loop loop_through(const systems::Structure& structure, const std::vector<d
       x.push_back(nodes[at] + around * period);
       y.push_back(states[at][i] + around * gap);
     }
-    const boost::math::interpolators::makima<std::vector<double>> spline(std::move(x), std::move(y));
-    for (std::size_t j = 0; j <= samples_of_spline; ++j)
-      even[j][i] = spline(nodes.front() + period * static_cast<double>(j) / static_cast<double>(samples_of_spline));
+    splines->emplace_back(std::move(x), std::move(y));
   }
-  return loop_through(structure, std::move(even), period);
+  const auto state = [splines, begin = nodes.front()](double time) {
+    std::vector<double> out;
+    for (const Spline& spline : *splines) out.push_back(spline(begin + time));
+    return out;
+  };
+  return curve_of(system, state, period, period / loop::time_sample_count);
 }
 
 }  // namespace orbweaver::starts

@@ -47,7 +47,9 @@ Kind loops() {
               for (const double value : state)
                 if (!std::isfinite(value)) throw WrongReading{"a sample that is not finite"};
             for (const double value :
-                 starts::loop_through(system->structure(), samples.times, samples.states, period).modes)
+                 starts::loop_through(system->structure(),
+                                      starts::curve_through(*system, samples.times, samples.states, period))
+                     .modes)
               if (std::isnan(value)) throw WrongReading{"a loop that is not a number"};
           }};
 }

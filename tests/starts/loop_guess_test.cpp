@@ -46,7 +46,7 @@ TEST(LoopGuess, IsTheLoopAtAnyTimes) {
         times.push_back(times.front() + period);
         states.push_back(states.front());
       }
-      const loop::Loop loop = loop_through(system->structure(), times, states, period);
+      const loop::Loop loop = loop_through(system->structure(), curve_through(*system, times, states, period));
       EXPECT_EQ(loop.winding, (std::vector<double>{0.0, -1.0, 0.0, 0.0}));
       EXPECT_EQ(loop.period, period);
       const double off = largest_difference(loop, 0.7);

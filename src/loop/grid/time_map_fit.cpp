@@ -184,6 +184,32 @@ std::size_t harmonics_that_count(const TimeMap& map, double least) {
   return count;
 }
 
+// With those only.
+TimeMap with_what_counts(const std::vector<double>& density, int most) {
+  TimeMap map = with_density(density, most);
+  map.coefficients.resize(2 * harmonics_that_count(map, *std::min_element(density.begin(), density.end())));
+  return map;
+}
+
+}  // namespace
+
+TimeMap map_of_density(std::vector<double> density, int most) {
+  const auto nodes = static_cast<int>(density.size());
+  double sum = 0.0;
+  for (const double v : density) sum += v;
+  for (double& v : density) v *= nodes / sum;
+  return with_what_counts(density, std::min(most, (nodes - 1) / 2));
+}
+
+TimeMap invariant(TimeMap map, const Isotropy& isotropy) {
+  for (std::size_t n = 0; 2 * n < map.coefficients.size(); ++n)
+    for (const SymmetryElement& g : isotropy)
+      make_invariant(g, static_cast<int>(n + 1), map.coefficients[2 * n], map.coefficients[2 * n + 1]);
+  return map;
+}
+
+namespace {
+
 // The same density begun at another s, so that `fastest` lies at the phase at which it was: what runs fast there would
 // be missed where slow parts, smoothed, take a little more or less time.
 TimeMap aligned(TimeMap map, double fastest, double phase) {
@@ -224,20 +250,14 @@ TimeMap scales_of(const Loop& loop, const Isotropy& isotropy, int most) {
   const int fine = FourierGrid::nodes_at_least(std::max(least_fit_nodes, nodes_a_harmonic * most));
   std::vector<double> density(static_cast<std::size_t>(fine));
   FourierGrid::of_size(fine).synthesize(most, 1, modes.data(), density.data());
-  double mean = 0.0;
-  for (double& v : density) mean += v = std::exp(v);
-  for (double& v : density) v *= fine / mean;
-  TimeMap map = with_density(density, (fine - 1) / 2);
-  map.coefficients.resize(2 * harmonics_that_count(map, *std::min_element(density.begin(), density.end())));
+  for (double& v : density) v = std::exp(v);
+  TimeMap map = map_of_density(std::move(density));
   const auto fastest =
       static_cast<std::size_t>(std::min_element(log_density.begin(), log_density.end()) - log_density.begin());
   // Reversors fix where s begins.
   if (std::none_of(isotropy.begin(), isotropy.end(), [](const SymmetryElement& g) { return g.reversing; }))
     map = aligned(std::move(map), s[fastest], loop.time_map.phase(two_pi * static_cast<double>(fastest) / nodes));
-  for (std::size_t n = 0; 2 * n < map.coefficients.size(); ++n)
-    for (const SymmetryElement& g : isotropy)
-      make_invariant(g, static_cast<int>(n + 1), map.coefficients[2 * n], map.coefficients[2 * n + 1]);
-  return map;
+  return invariant(std::move(map), isotropy);
 }
 
 }  // namespace
@@ -278,12 +298,7 @@ TimeMapFit fit_to_rate(const Loop& loop, const Rate& rate, const Isotropy& isotr
     const double before = to_new.inverse(two_pi * j / fine);
     density[static_cast<std::size_t>(j)] = shorter.time_map.density(before) / to_new.density(before);
   }
-  TimeMap map = with_density(density, (fine - 1) / 2);
-  map.coefficients.resize(2 * harmonics_that_count(map, *std::min_element(density.begin(), density.end())));
-  for (std::size_t n = 0; 2 * n < map.coefficients.size(); ++n)
-    for (const SymmetryElement& g : isotropy)
-      make_invariant(g, static_cast<int>(n + 1), map.coefficients[2 * n], map.coefficients[2 * n + 1]);
-  return under(shorter, map, tolerance);
+  return under(shorter, invariant(with_what_counts(density, (fine - 1) / 2), isotropy), tolerance);
 }
 
 bool is_invariant(const TimeMap& map, const Isotropy& isotropy) {

@@ -7,6 +7,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/curve/time_samples.hpp"
+#include "orbweaver/loop/grid/time_map_fit.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
@@ -111,6 +112,13 @@ Loop aligned(const Loop& from, const Alignment& alignment) {
 
 namespace {
 
+// The loop, which goes m times around another one, with s run alike each time.
+Loop with_equal_turns(const Loop& loop, int m) {
+  if (loop.time_map.kappa != 1.0) return resolved_in_time(loop);
+  const SymmetryElement turn{"1", false, systems::AffineMap::identity(loop.dimension), 1, m};
+  return with_time_map(loop, invariant(loop.time_map, {turn}), loop.cutoff);
+}
+
 bool winds_by_multiples_of(const Loop& loop, int m) {
   return std::all_of(loop.winding.begin(), loop.winding.end(), [m](double n) { return std::fmod(n, m) == 0.0; });
 }
@@ -149,7 +157,7 @@ int repetitions(const Loop& loop, double tolerance) {
 Loop without_repetition(const Loop& loop, int m) {
   core::require(m >= 1 && winds_by_multiples_of(loop, m), "a loop goes a whole number of times around a shorter one");
   if (m == 1) return loop;
-  const Loop even = resolved_in_time(loop);
+  const Loop even = with_equal_turns(loop, m);
   Loop out = with_cutoff(even, std::max(1, even.cutoff / m));
   out.period = even.period / m;
   for (double& n : out.winding) n /= m;
@@ -158,6 +166,10 @@ Loop without_repetition(const Loop& loop, int m) {
       out.cosine(k, i) = k * m <= even.cutoff ? even.cosine(k * m, i) : 0.0;
       out.sine(k, i) = k * m <= even.cutoff ? even.sine(k * m, i) : 0.0;
     }
+  const std::vector<double>& map = even.time_map.coefficients;
+  out.time_map.coefficients.clear();
+  for (std::size_t k = static_cast<std::size_t>(m); 2 * k <= map.size(); k += static_cast<std::size_t>(m))
+    out.time_map.coefficients.insert(out.time_map.coefficients.end(), {map[2 * k - 2], map[2 * k - 1]});
   return out;
 }
 

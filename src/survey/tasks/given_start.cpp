@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -27,8 +28,7 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// Samples of a trajectory, and its integrator's tolerance: the orbit is corrected from them.
-constexpr int samples_of_guess = 4 * loop::time_sample_count;
+/// Of a trajectory's integrator: the orbit is corrected from it.
 constexpr double guess_tolerance = 1e-10;
 /// Of an energy, in its scale: branches end on limits to rounding.
 constexpr double same_energy = 1e-9;
@@ -43,58 +43,70 @@ constexpr double repeated = 1e-6;
 /// An orbit whose amplitude is less, relative to the size of its states, rests.
 constexpr double at_rest = 1e-6;
 
-/// States of a trajectory that comes near its image after them, moved by what it misses, spread evenly over them, and
-/// continued by their images until they close.
+/// Nodes of a trajectory that comes near its image after them, moved by what it misses, spread evenly over their time,
+/// and continued by their images until they close.
 void close_by_symmetry(const systems::Structure& structure, const GivenStart& given,
-                       std::vector<std::vector<double>>& states) {
+                       std::vector<starts::TrajectoryNode>& nodes) {
   const auto vector_of = [](const std::vector<double>& z) {
     return Eigen::Map<const Eigen::VectorXd>(z.data(), static_cast<Eigen::Index>(z.size()));
   };
   systems::AffineMap map =
       loop::SymmetryGroup::of_space(structure).elements().at(static_cast<std::size_t>(given.symmetry)).map;
-  Eigen::VectorXd missed = vector_of(states.back()) - map(vector_of(states.front()));
+  Eigen::VectorXd missed = vector_of(nodes.back().state) - map(vector_of(nodes.front().state));
   for (const int angle : structure.angles) {
     const double turns = 2.0 * std::numbers::pi * std::round(missed(angle) / (2.0 * std::numbers::pi));
     map.offset(angle) += turns;
     missed(angle) -= turns;
   }
-  const std::size_t piece = states.size() - 1;
-  for (std::size_t j = 0; j <= piece; ++j)
-    for (std::size_t i = 0; i < states[j].size(); ++i)
-      states[j][i] -= static_cast<double>(j) / static_cast<double>(piece) * missed(static_cast<Eigen::Index>(i));
+  const std::size_t piece = nodes.size() - 1;
+  for (starts::TrajectoryNode& node : nodes)
+    for (std::size_t i = 0; i < node.state.size(); ++i) {
+      const double rate = missed(static_cast<Eigen::Index>(i)) / given.period;
+      node.state[i] -= node.time * rate;
+      node.slope[i] -= rate;
+    }
+  const auto list = [](const Eigen::VectorXd& z) { return std::vector<double>(z.begin(), z.end()); };
   for (std::size_t j = 1; j <= piece * static_cast<std::size_t>(given.order - 1); ++j) {
-    const Eigen::VectorXd image = map(vector_of(states[j]));
-    states.emplace_back(image.begin(), image.end());
+    const starts::TrajectoryNode& of = nodes[j];
+    nodes.push_back({of.time + given.period, list(map(vector_of(of.state))), list(map.matrix * vector_of(of.slope)),
+                     list(map.matrix * vector_of(of.bend))});
   }
 }
 
-/// States of the trajectory through `state`, at equal times over `period`, the last one included; `before` of them
-/// before it.
-std::vector<std::vector<double>> trajectory_through(const systems::System& system, const std::vector<double>& state,
-                                                    double period, int samples, int before) {
-  std::vector<std::vector<double>> states{state};
-  for (int j = 0; j < before; ++j)
-    states.push_back(certificate::integrate(system, states.back(), -period / samples, guess_tolerance));
-  std::reverse(states.begin(), states.end());
-  for (int j = before; j < samples; ++j)
-    states.push_back(certificate::integrate(system, states.back(), period / samples, guess_tolerance));
-  return states;
+/// The part of a given start's trajectory that lies before its state.
+double time_before(const systems::System& system, const GivenStart& given) {
+  return given.is_return() || system.structure().dissipative ? 0.0 : 0.5 * given.period;
 }
 
-/// The trajectory of a given start as a loop. That of a return runs from its state over a period, and over one more for
-/// each time that it goes on as its image. That through a state runs half a period to either side: where an orbit is
-/// unstable errors grow over half the time only. Backwards from what damps they would grow more.
-loop::Loop trajectory_of(const systems::System& system, const std::vector<double>& point, const GivenStart& given) {
-  const int samples = samples_of_guess / given.order;
-  const int before = given.is_return() || system.structure().dissipative ? 0 : samples / 2;
-  std::vector<std::vector<double>> states = trajectory_through(system, point, given.period, samples, before);
-  if (given.is_return()) close_by_symmetry(system.structure(), given, states);
-  return starts::loop_through(system.structure(), std::move(states), given.period * given.order);
+/// The trajectory of a given start. That of a return runs from its state over a period, and over one more for each time
+/// that it goes on as its image. That through a state runs half a period to either side: where an orbit is unstable
+/// errors grow over half the time only. Backwards from what damps they would grow more.
+starts::GuessCurve trajectory_of(const systems::System& system, const std::vector<double>& point,
+                                 const GivenStart& given) {
+  const double before = time_before(system, given);
+  const auto nodes_over = [&](double time) {
+    return starts::trajectory_nodes(
+        system,
+        [&](const std::vector<double>& state, double step) {
+          return certificate::integrate(system, state, step, guess_tolerance);
+        },
+        point, time, given.period * given.order / loop::time_sample_count);
+  };
+  std::vector<starts::TrajectoryNode> nodes = nodes_over(given.period - before);
+  if (before > 0.0) {
+    std::vector<starts::TrajectoryNode> earlier = nodes_over(-before);
+    earlier.erase(earlier.begin());
+    nodes.insert(nodes.begin(), std::make_move_iterator(earlier.rbegin()), std::make_move_iterator(earlier.rend()));
+  }
+  if (given.is_return()) close_by_symmetry(system.structure(), given, nodes);
+  return starts::curve_through(std::move(nodes));
 }
 
 loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
-  loop::Loop guess = given.guess.modes.empty() ? trajectory_of(system, work.point, given) : given.guess;
+  loop::Loop guess = given.guess.modes.empty()
+                         ? starts::loop_through(system.structure(), trajectory_of(system, work.point, given))
+                         : given.guess;
   guess.parameters.clear();
   for (const std::string& name : system.family_scalars().free)
     guess.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
@@ -103,14 +115,15 @@ loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
 
 /// The orbit started where the first reversor that it has maps it to itself; as it is where it has none.
 loop::Loop at_reversor(const systems::Structure& structure, const loop::Loop& orbit) {
-  const loop::Loop even = loop::evenly_in_time(orbit);
+  const loop::Loop even = loop::resolved_in_time(orbit);
+  const loop::Loop own = loop::with_cutoff(orbit, loop::allowed_cutoff_at_least(orbit.cutoff));
   for (const systems::Symmetry& reversor : structure.reversors) {
     // R z(-t), which is z(t - sigma) for some sigma where the orbit has the symmetry.
     const loop::Loop image = loop::transformed(even, reversor.map, true, 0.0);
     const std::vector<loop::ShiftMinimum> shifts = loop::shift_minima(image, even, structure.angles);
     if (shifts.empty() || !(shifts.front().square < std::pow(loop::symmetry_tolerance, 2))) continue;
     for (const double start : {-0.5 * shifts.front().shift, 0.5 * shifts.front().shift}) {
-      loop::Loop moved = loop::time_shifted(even, start - std::floor(start));
+      loop::Loop moved = loop::time_shifted(own, start - std::floor(start));
       for (const loop::SymmetryElement& element : loop::find_isotropy(structure, moved, loop::symmetry_tolerance))
         if (element.reversing && element.shift_numerator == 0) return moved;
     }
@@ -272,6 +285,33 @@ std::string advice_for_closed(const systems::System& system, const std::vector<d
       directions, directions == 1 ? "" : "s");
 }
 
+/// Where along its guess the motion is fastest, as a text: there a correction is decided.
+std::string fastest_text(const systems::System& system, const SweepWork& work) {
+  const GivenStart& given = work.given.front();
+  const double unit = system.scales().time;
+  try {
+    const loop::Loop& guess = given.guess;
+    const starts::GuessCurve curve = guess.modes.empty()
+                                         ? trajectory_of(system, work.point, given)
+                                         : starts::curve_of(
+                                               system, [&](double time) { return loop::state_at(guess, time); },
+                                               given.period, given.period / loop::time_sample_count);
+    const starts::GuessCurve::Fastest fastest = curve.fastest();
+    const double begin = guess.modes.empty() ? time_before(system, given) : 0.0;
+    std::string text = fmt::format(
+        "; of its guess, of period {:.9g}, the motion is fastest at t = {:.6g}, where it turns "
+        "in a time of {:.2g}",
+        curve.period * unit, (fastest.time - begin) * unit, unit / fastest.rate);
+    const std::vector<systems::Guard>& guards = system.structure().guards;
+    for (std::size_t k = 0; k < guards.size(); ++k)
+      text += fmt::format("{}{} = {:.3g}", k == 0 ? " with " : ", ", guards[k].name,
+                          system.guard(static_cast<int>(k), curve.state(fastest.time)));
+    return text;
+  } catch (const core::NumericalError& error) {
+    return fmt::format("; its guess: {}", error.what());
+  }
+}
+
 /// What is to be done where a given state leads to no orbit; empty for other starts.
 std::string advice_for(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
@@ -317,14 +357,20 @@ SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const 
   outcome.point = work.point;
   const Correction correction = corrected(scene, system, work, team);
   if (!correction.orbit) {
-    if (!work.given.front().is_return()) throw core::NumericalError(correction.why + advice_for(*system, work));
+    if (!work.given.front().is_return())
+      throw core::NumericalError(correction.why + fastest_text(*system, work) + advice_for(*system, work));
     outcome.rejected.push_back(correction.why);
     return outcome;
   }
   FoundMode found;
   found.base = at_reversor(system->structure(), once_around(correction.orbit->loop));
   found.isotropy = loop::find_isotropy(system->structure(), found.base, loop::symmetry_tolerance);
-  if (!loop::is_invariant(found.base.time_map, found.isotropy)) found.base = loop::evenly_in_time(found.base);
+  if (!loop::is_invariant(found.base.time_map, found.isotropy)) {
+    const bool has_pulse = found.base.time_map.kappa != 1.0;
+    found.base = has_pulse ? loop::evenly_in_time(found.base)
+                           : loop::with_time_map(found.base, loop::invariant(found.base.time_map, found.isotropy),
+                                                 found.base.cutoff);
+  }
   found.period = found.base.period;
   found.cutoff = found.base.cutoff;
   found.base_is_orbit = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "orbweaver/loop/curve/loop.hpp"
@@ -34,6 +35,13 @@ inline constexpr double least_density = 0.02;
 /// As fit_general, but it is the logarithm of the density that has up to `most` harmonics: the density may fall to any
 /// part of the even one, and has as many harmonics as that takes. For orbits with time scales far apart.
 [[nodiscard]] TimeMapFit fit_scales(const Loop& loop, const Isotropy& isotropy, double tolerance, int most = 32);
+
+/// The map with this density in any unit, positive and given at nodes equidistant in s, with at most `most` harmonics:
+/// those that count beside its least value.
+[[nodiscard]] TimeMap map_of_density(std::vector<double> density, int most = std::numeric_limits<int>::max());
+
+/// What of the map's coefficients is invariant under the symmetries.
+[[nodiscard]] TimeMap invariant(TimeMap map, const Isotropy& isotropy);
 
 /// How fast s is to run, ds/dt > 0 in any unit, at the samples of a loop.
 using Rate = std::function<std::vector<double>(const Samples& samples)>;
