@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "csv_text.hpp"
 #include "orbweaver/bifurcation/small_oscillations.hpp"
 #include "orbweaver/certificate/certificate.hpp"
 #include "orbweaver/certificate/integrate.hpp"
@@ -172,8 +173,8 @@ std::string eigenvalue_csv(const std::vector<EquilibriumReport>& reports) {
   std::string text = shared ? "period" : "";
   std::size_t rows = 0;
   for (const EquilibriumReport& r : reports) {
-    if (!shared) text += fmt::format("{}\"period at {}\"", text.empty() ? "" : ",", r.text);
-    text += fmt::format(",\"smallest eigenvalue at {}\"", r.text);
+    if (!shared) text += fmt::format("{}{}", text.empty() ? "" : ",", csv_text("period at " + r.text));
+    text += "," + csv_text("smallest eigenvalue at " + r.text);
     rows = std::max(rows, r.sweep.table.size());
   }
   text += "\n";

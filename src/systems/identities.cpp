@@ -193,6 +193,26 @@ std::string state_text(const System& system, const std::vector<double>& state) {
                   name_with_plugin(system.info().name), what, state_text(system, state)));
 }
 
+/// All that follows orbits counts on derivatives: what is none there is no fault of an identity.
+void require_derivatives(const System& system, const std::vector<std::vector<double>>& states) {
+  const auto d = static_cast<Eigen::Index>(system.dimension());
+  const std::vector<std::string>& names = system.info().state_names;
+  VectorXd f(d);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(d, d);
+  for (const std::vector<double>& state : states) {
+    if (!field(system, vector_of(state)).allFinite()) continue;
+    system.field_jacobian(1, state.data(), f.data(), jacobian.data());
+    for (Eigen::Index i = 0; i < d; ++i)
+      for (Eigen::Index j = 0; j < d; ++j)
+        if (!std::isfinite(jacobian(i, j)))
+          refuse(system,
+                 fmt::format("the field is finite, and its derivative d f({}) / d {} is {} (a root or a power has none "
+                             "at 0)",
+                             names[static_cast<std::size_t>(i)], names[static_cast<std::size_t>(j)], jacobian(i, j)),
+                 state);
+  }
+}
+
 void require(const System& system, const IdentityError& found) {
   if (found.error <= beyond_rounding) return;
   refuse(system,
@@ -278,9 +298,11 @@ void require_identities(const System& system, const std::vector<std::vector<doub
         refuse(system, fmt::format("expected the guard {} to be positive, got {:.6g}", structure.guards[k].name, value),
                point);
     }
+  require_derivatives(system, points);
   const auto require_as_far_as = [&](double size) {
-    for (const IdentityError& found : identity_errors(system, states_around(structure, points, states_each, size)))
-      require(system, found);
+    const std::vector<std::vector<double>> around = states_around(structure, points, states_each, size);
+    require_derivatives(system, around);
+    for (const IdentityError& found : identity_errors(system, around)) require(system, found);
   };
   const double size = largest_coordinate(structure, points);
   require_as_far_as(size);

@@ -4,7 +4,7 @@
 #   LEFTOVER a file that is made beforehand (after FRESH)
 #   SAME     a file whose bytes must not change
 #   HAS      a path that must exist afterwards
-#   GONE     a path that must not exist afterwards
+#   GONE     a path, with * for any characters, that must not exist afterwards
 string(REPLACE "|" ";" COMMAND "${COMMAND}")
 string(REPLACE "|" ";" OUT "${OUT}")
 string(REPLACE "|" ";" ERR "${ERR}")
@@ -46,6 +46,9 @@ endif()
 if(HAS AND NOT EXISTS "${HAS}")
   message(FATAL_ERROR "${HAS} is missing")
 endif()
-if(GONE AND EXISTS "${GONE}")
-  message(FATAL_ERROR "${GONE} is still there")
+if(GONE)
+  file(GLOB left "${GONE}")
+  if(left)
+    message(FATAL_ERROR "${left} is still there")
+  endif()
 endif()

@@ -44,7 +44,8 @@ struct IdentityError {
                                                              const std::vector<std::vector<double>>& points, int count,
                                                              double size);
 
-/// Throws core::InputError where the system contradicts its structure beyond rounding, at `equilibria` and other
+/// Throws core::InputError where the field is finite and its Jacobian is not, or where the system contradicts its
+/// structure beyond rounding, at `equilibria` and other
 /// `states` (sizes dimension) and around them, as far as their largest coordinate and 1: an identity above, eigenvalues
 /// at an equilibrium that do not pair though it is symplectic, or a guard that is not positive at one of them. The
 /// message says which, by how much, and where. Takes well below a millisecond for an equilibrium.
