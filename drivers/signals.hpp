@@ -5,7 +5,8 @@
 
 namespace orbweaver::drivers {
 
-/// Signals that ask a survey to stop: SIGTERM, SIGUSR1, SIGINT, and SIGHUP unless it was ignored from the start (nohup).
+/// Signals that ask a survey to stop: SIGTERM, SIGUSR1, SIGINT, and SIGHUP unless it was ignored from the start
+/// (nohup).
 [[nodiscard]] sigset_t stopping_signals();
 
 /// From now on these signals wait, through exec too: for stop_on_signals, or for release_signals.

@@ -21,8 +21,8 @@ inline constexpr double period_window = 1.1;
 /// clearly (docs/mathematics.md, "Ends").
 inline constexpr std::size_t earlier_guards = 5;
 
-/// A cheap look: whether the branch's next orbit may lie within `reach` of its first one, all around a circle. Neither T
-/// nor the amplitude nor a parameter can be further apart than the loops are.
+/// A cheap look: whether the branch's next orbit may lie within `reach` of its first one, all around a circle. Neither
+/// T nor the amplitude nor a parameter can be further apart than the loops are.
 [[nodiscard]] bool may_have_come_back(const Frontier& frontier, const Trial& trial, double reach);
 
 /// Another, dearer: whether no time shift of the first orbit lies on the step to `loop`, or less than this part of the

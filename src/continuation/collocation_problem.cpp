@@ -289,7 +289,8 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
 }
 
 /// By damped steps of Newton's method, whose linear systems are solved as they are: beside a close passage the boxes'
-/// error is magnified by all that follows. So is the branch from here on where the boxes do not do near the orbit either.
+/// error is magnified by all that follows. So is the branch from here on where the boxes do not do near the orbit
+/// either.
 equations::AndersonSolver::Result CollocationProblem::solved_from_afar(Collocation& e, std::vector<double>& values) {
   e.precondition_by(Preconditioner::krylov);
   equations::approach(e, values, e.period_at(), bounded_amplitude());

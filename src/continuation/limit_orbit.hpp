@@ -32,7 +32,8 @@ struct Passed {
 /// None, with why.
 [[nodiscard]] OnLimit failure(const Passed& passed, std::string_view why);
 
-/// The orbit that a prediction is corrected to, with as many harmonics as it needs: the branch's points have those then.
+/// The orbit that a prediction is corrected to, with as many harmonics as it needs: the branch's points have those
+/// then.
 [[nodiscard]] OnLimit orbit_from(Stepper& stepper, const Passed& passed, Prediction prediction,
                                  std::optional<int> held_scalar = std::nullopt);
 

@@ -18,8 +18,8 @@ namespace orbweaver::continuation {
 
 namespace {
 
-/// Where the first orbit lies on a step is off by what its phase is beside the step's end: each correction from beside it
-/// takes away most of the distance, unless it is another orbit (bifurcation/identity.cpp has the same).
+/// Where the first orbit lies on a step is off by what its phase is beside the step's end: each correction from beside
+/// it takes away most of the distance, unless it is another orbit (bifurcation/identity.cpp has the same).
 constexpr double phase_progress = 0.3;
 
 }  // namespace

@@ -70,10 +70,10 @@ std::optional<std::vector<int>> known_angles_of(const archive::Header& header) {
 std::vector<int> angles_of(const archive::Archive& atlas) {
   std::optional<std::vector<int>> angles = known_angles_of(atlas.header());
   if (!angles)
-    throw core::InputError(
-        fmt::format("{} does not say which coordinates wind (it is of format_minor {}, before 11), and its system {} is "
-                    "not known here: give that system's plugin by --plugin",
-                    atlas.path().string(), atlas.format_minor(), atlas.header().system));
+    throw core::InputError(fmt::format(
+        "{} does not say which coordinates wind (it is of format_minor {}, before 11), and its system {} is "
+        "not known here: give that system's plugin by --plugin",
+        atlas.path().string(), atlas.format_minor(), atlas.header().system));
   return *std::move(angles);
 }
 

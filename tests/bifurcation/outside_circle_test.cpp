@@ -90,8 +90,8 @@ TEST(OutsideCircle, LeastPassagesAreAtMostThoseOfAnyWay) {
   }
 }
 
-/// A family of a system in three dimensions along which the trace of the fundamental map changes evenly from 0 to 1, and
-/// not before and behind, and its determinant not at all, as where stretching is strong.
+/// A family of a system in three dimensions along which the trace of the fundamental map changes evenly from 0 to 1,
+/// and not before and behind, and its determinant not at all, as where stretching is strong.
 struct Stretched {
   systems::Structure structure = test::structure_of(3, false, false);
   std::vector<TestFunction> functions = test_functions(structure, 1, 2);

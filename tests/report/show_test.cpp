@@ -347,11 +347,14 @@ TEST(Show, CrossingsReadablyWithTheFamiliesBornAndEndingThere) {
       "row  family     period  energy  kind             m  q  j  kernel  place error  in energy  residual  test value "
       " ";
   const std::string of_two =
-      R"(  2  Out-Phase     5.5       -  branch-point     1  1  0       2            -          -         -           -  )";
-  EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable), head + R"(born there            end there
+      "  2  Out-Phase     5.5       -  branch-point     1  1  0       2            -          -         -           -"
+      "  ";
+  EXPECT_EQ(shown(atlas, "crossings", TextFormat::readable),
+            head + R"(born there            end there
   0  In-Phase      4.5       -  fold-energy      1  1  0       -            -          -         -           -  )" +
-                                                                 R"(-                     Ästhetik "B", 1
-  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2      1.5e-03    2.5e-04  -3.5e-12          -2  ID1, Ästhetik "B", 1  -
+                R"(-                     Ästhetik "B", 1
+  1  In-Phase      6.5   -1.25  period-doubling  2  4  1       2  )" +
+                R"(    1.5e-03    2.5e-04  -3.5e-12          -2  ID1, Ästhetik "B", 1  -
 )" + of_two + "-                     -\n");
   std::ostringstream out;
   print_table(out, atlas, "crossings", TextFormat::readable, {.family = "Out-Phase"});

@@ -7,10 +7,10 @@
 
 namespace orbweaver::test {
 
-/// Limit cycles on closed curves in lam: with s = x^2 + (y - k x^2)^2 - 1 in units of R they are s^2 + (lam/L)^2 = a, and,
-/// where q is 1, those of (s - 0.8)^2 + (lam/L)^2 = 1 + a too; each once around in 2 pi/(w (1 + c s)). Across them u and v
-/// turn half as fast: on a cycle they grow at the rate g + lam/L along a direction that comes back reversed, so that its
-/// period doubles where that is 0. No symmetry is declared; the field has some.
+/// Limit cycles on closed curves in lam: with s = x^2 + (y - k x^2)^2 - 1 in units of R they are s^2 + (lam/L)^2 = a,
+/// and, where q is 1, those of (s - 0.8)^2 + (lam/L)^2 = 1 + a too; each once around in 2 pi/(w (1 + c s)). Across them
+/// u and v turn half as fast: on a cycle they grow at the rate g + lam/L along a direction that comes back reversed, so
+/// that its period doubles where that is 0. No symmetry is declared; the field has some.
 class Isola {
  public:
   static constexpr int dimension = 4;

@@ -60,7 +60,8 @@ inline constexpr double same_orbit_tolerance = 1e-6;
 /// where the coordinates leave fewer digits than that, what rounding of them is allowed.
 [[nodiscard]] double same_within(const loop::Loop& loop, double tolerance = same_orbit_tolerance);
 
-/// sqrt(mean |dz|^2 + (dT/T)^2 + |dp|^2) in the units of the scene, for loops told in the system's scales: the archive's arclength.
+/// sqrt(mean |dz|^2 + (dT/T)^2 + |dp|^2) in the units of the scene, for loops told in the system's scales: the
+/// archive's arclength.
 [[nodiscard]] double arclength_in_units(const systems::System& system, const loop::Loop& from, const loop::Loop& to);
 
 }  // namespace orbweaver::continuation

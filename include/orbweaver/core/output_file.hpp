@@ -6,8 +6,8 @@
 
 namespace orbweaver::core {
 
-/// A new, empty file beside `target`, whose name it takes when it is whole: NAME.N.part with the least N that no file, link or anything
-/// else has. Another process that writes the same target has another one.
+/// A new, empty file beside `target`, whose name it takes when it is whole: NAME.N.part with the least N that no file,
+/// link or anything else has. Another process that writes the same target has another one.
 class PartFile {
  public:
   /// Throws InputError where the target is a folder, EnvironmentError where no file can be made there.
@@ -18,7 +18,8 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return _path; }
-  /// Waits until what was written is on the disk, and takes the target's name from whatever has it. Throws EnvironmentError.
+  /// Waits until what was written is on the disk, and takes the target's name from whatever has it. Throws
+  /// EnvironmentError.
   void publish();
 
  private:
@@ -40,9 +41,9 @@ class TemporaryFolder {
   std::filesystem::path _path;
 };
 
-/// Writes a PartFile and publishes it: an older PATH stays until the new one is whole. A device or a pipe (/dev/stdout) is
-/// written into as it is. Throws InputError where PATH is a folder, EnvironmentError where it cannot be written; what
-/// `write` throws passes through. Nothing is left of what was not finished.
+/// Writes a PartFile and publishes it: an older PATH stays until the new one is whole. A device or a pipe (/dev/stdout)
+/// is written into as it is. Throws InputError where PATH is a folder, EnvironmentError where it cannot be written;
+/// what `write` throws passes through. Nothing is left of what was not finished.
 void write_output_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
 /// The same with the bytes of a file. Throws EnvironmentError where that is empty or cannot be read.

@@ -7,9 +7,9 @@
 
 namespace orbweaver::core {
 
-/// Files are written through these and through output_file.hpp only. What is created is a new file: a file or a link of that
-/// name goes first, and nothing that it leads to is touched; a link is not followed where a file is opened, either.
-/// All of these throw EnvironmentError with the path, what was being done and the system's reason.
+/// Files are written through these and through output_file.hpp only. What is created is a new file: a file or a link of
+/// that name goes first, and nothing that it leads to is touched; a link is not followed where a file is opened,
+/// either. All of these throw EnvironmentError with the path, what was being done and the system's reason.
 
 /// Creates the file, gives it `bytes` bytes of disk and shows that they can be written.
 void try_out_file(const std::filesystem::path& path, std::uint64_t bytes);

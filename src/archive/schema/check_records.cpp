@@ -116,9 +116,10 @@ std::string winding_problem(const Header& header) {
       wind.size() == names && all.size() == names &&
       (names == 0 || (*all.begin() >= 0 && *all.rbegin() < static_cast<std::int64_t>(header.state_names.size())));
   return fits ? ""
-              : fmt::format("has winding_coordinates [{}]; another of 0 to {} for each of the {} winding names was "
-                            "expected",
-                            fmt::join(wind, ", "), header.state_names.size() - 1, names);
+              : fmt::format(
+                    "has winding_coordinates [{}]; another of 0 to {} for each of the {} winding names was "
+                    "expected",
+                    fmt::join(wind, ", "), header.state_names.size() - 1, names);
 }
 
 void check_orbits(const Header& header, const Records& records) {
