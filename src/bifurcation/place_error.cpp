@@ -11,22 +11,21 @@ namespace orbweaver::bifurcation {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 /// The factor to which an enclosure is found: bounds of errors are good to no less.
 constexpr double resolved = 2.0;
 /// Where what turns is asked how it scatters, in parts of the bracket: so near it is a straight line to 1e-12.
-constexpr std::array scattering{1e-6, 2e-6};
+constexpr std::array scatter_shares{1e-6, 2e-6};
 
-struct Side {
+struct SideOfZero {
   double distance;
   bool is_told;
 };
 
-Side side_of_zero(const BoundedFunction& function, const std::vector<double>& asked, double place, double end,
-                  double least) {
+SideOfZero side_of_zero(const BoundedFunction& function, const std::vector<double>& asked, double place, double end,
+                        double least) {
   const double direction = end > place ? 1.0 : -1.0;
-  Side told{std::abs(end - place), false};
+  SideOfZero told{std::abs(end - place), false};
+  const double error = function(place).error;
   double share = 1.0;  // the error's of the value there
   double untold = 0.0;
   std::vector<double> distances{told.distance};
@@ -44,7 +43,7 @@ Side side_of_zero(const BoundedFunction& function, const std::vector<double>& as
     const bool is_told = reading.sign() == sign;
     if (is_told) {
       told = {distance, true};
-      share = reading.error / std::abs(reading.value);
+      share = std::fmin(error, reading.error) / std::abs(reading.value);
     }
     return is_told;
   };
@@ -66,7 +65,7 @@ double scatter_of(const BoundedFunction& function, double place, const Interval&
   const double there = function(place).value;
   double scatter = std::numeric_limits<double>::epsilon() *
                    std::max(std::abs(function(within.from).value), std::abs(function(within.to).value));
-  for (const double share : scattering) {
+  for (const double share : scatter_shares) {
     const double away = share * (within.to - within.from);
     if (place - away < within.from || place + away > within.to) continue;
     const double middle = 0.5 * (function(place - away).value + function(place + away).value);
@@ -78,7 +77,7 @@ double scatter_of(const BoundedFunction& function, double place, const Interval&
 /// The most that a quantity differs from what it is at the place, where it differs by `values` at `distances` (both
 /// signs), and between these as the parabola through the outermost two and the place.
 double most_change(const std::vector<double>& distances, const std::vector<double>& values) {
-  double most = nan;
+  double most = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) most = std::fmax(most, std::abs(value));
   if (distances.size() < 2 || std::isnan(most)) return most;
   const double a = distances.front(), b = distances.back();
@@ -94,8 +93,8 @@ double most_change(const std::vector<double>& distances, const std::vector<doubl
 
 Enclosure enclosure_of_zero(const BoundedFunction& function, const std::vector<double>& asked, double place,
                             double from, double to, double least) {
-  const Side before = side_of_zero(function, asked, place, from, least);
-  const Side behind = side_of_zero(function, asked, place, to, least);
+  const SideOfZero before = side_of_zero(function, asked, place, from, least);
+  const SideOfZero behind = side_of_zero(function, asked, place, to, least);
   return {before.distance, behind.distance, before.is_told && behind.is_told};
 }
 
@@ -126,9 +125,12 @@ PlaceError place_error(const EventFunction& function, const continuation::Family
   error.arclength = std::max(enclosure.before, enclosure.behind) * std::abs(family.arclength_unit_at(place));
   std::vector<double> distances;
   std::array<std::vector<double>, 3> changes;
+  // Positions and distances differ by rounding.
+  const double rounding =
+      2.0 * std::numeric_limits<double>::epsilon() * (std::abs(place) + enclosure.before + enclosure.behind);
   const auto& seen = function.seen();
-  for (auto other = seen.lower_bound(place - enclosure.before);
-       other != seen.end() && other->first <= place + enclosure.behind; ++other) {
+  for (auto other = seen.lower_bound(place - enclosure.before - rounding);
+       other != seen.end() && other->first <= place + enclosure.behind + rounding; ++other) {
     distances.push_back(other->first - place);
     for (std::size_t n = 0; n < changes.size(); ++n) changes[n].push_back(other->second[n] - there[n]);
   }

@@ -92,8 +92,8 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
       return fmt::format("ends otherwise, or elsewhere, than its mirror image {}", names.other_family);
     case FindingKind::open_place:
       return fmt::format(
-          "{}: its place is known to {:.1e} in arclength only{}: the index passes its value so slowly, or is known so "
-          "badly, that its error bound leaves no more",
+          "{}: its place is known to {:.1e} in arclength only{}: so near what vanishes there does not exceed its own "
+          "error",
           names.crossing, f.deviation, f.detail);
     case FindingKind::index_change:
       return fmt::format("a multiplier passes exp(2 pi i {}/{}), and no crossing is listed there", f.number,
