@@ -18,9 +18,6 @@ namespace orbweaver::continuation {
 
 namespace {
 
-/// How far beside a step, in parts of it, the first orbit may lie: a step that turns by 0.3 rad leaves its chord by a
-/// twentieth.
-constexpr double beside_closing_step = 0.2;
 /// Where the first orbit lies on a step is off by what its phase is beside the step's end: each correction from beside it
 /// takes away most of the distance, unless it is another orbit (bifurcation/identity.cpp has the same).
 constexpr double phase_progress = 0.3;
@@ -37,15 +34,17 @@ void StepLimits::forget() {
 /// twice. None where the branch goes on.
 std::optional<OnLimit> StepLimits::closing_orbit(const Trial& trial, double length) {
   const std::vector<double>& before = _stepper.last();
-  const double reach = std::hypot(1.0, beside_closing_step);
+  // What nowhere turns further from its chord lies in the triangle over it that does at both ends.
+  const double beside = 0.5 * std::tan(std::acos(_options.least_cosine));
+  const double reach = std::hypot(1.0, beside);
   if (!may_have_come_back(_frontier, trial, reach * _problem.distance(trial.values, before))) return std::nullopt;
   const double step = _problem.product(trial.values, before, trial.values, before);
-  if (is_far_off(_system.structure(), _frontier.first, trial.loop, beside_closing_step, step)) return std::nullopt;
+  if (is_far_off(_system.structure(), _frontier.first, trial.loop, beside, step)) return std::nullopt;
   const auto first_beside = [&](const loop::Loop& other) {
     const loop::Alignment alignment = loop::align_in_time(_system.structure(), _frontier.first, other);
     return _problem.from_loop(under_map(loop::aligned(_frontier.first, alignment), _problem.resolution().time_map));
   };
-  const double off_step = beside_closing_step * beside_closing_step * step;
+  const double off_step = beside * beside * step;
   const auto square = [&](const std::vector<double>& a, const std::vector<double>& b) {
     return _problem.product(a, b, a, b);
   };
@@ -62,12 +61,15 @@ std::optional<OnLimit> StepLimits::closing_orbit(const Trial& trial, double leng
     OnLimit closing = orbit_from(_stepper, passed, prediction);
     if (!closing.trial) return closing;
     const double distance = distance_between_orbits(_system, _frontier.first, closing.trial->loop);
-    _frontier.has_come_back = distance <= same_within(_frontier.first);
-    if (_frontier.has_come_back) return closing;
+    const bool is_first = distance <= same_within(_frontier.first);
     // A shorter step tells.
-    if (_problem.resolution().size != size || square(closing.trial->values, prediction.values) > off_step)
+    if (!is_first &&
+        (_problem.resolution().size != size || square(closing.trial->values, prediction.values) > off_step))
       return failure(passed, "another orbit is beside it");
-    if (!(distance < phase_progress * least)) return std::nullopt;
+    if (_problem.resolution().size != size || !(distance < phase_progress * least)) {
+      _frontier.has_come_back = is_first;
+      return is_first ? std::optional(std::move(closing)) : std::nullopt;
+    }
     least = distance;
     there = first_beside(closing.trial->loop);
     prediction.values = std::move(closing.trial->values);

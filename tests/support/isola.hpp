@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "orbweaver/systems/model/model_system.hpp"
 #include "support/described.hpp"
 
@@ -41,6 +43,7 @@ class Isola {
 
     template <class S>
     void field(const S* z, S* f) const {
+      using std::sqrt;
       const P lam = _lam / _l;
       const S x = z[0] / _r;
       const S y = z[1] / _r - x * x * _k;
@@ -54,11 +57,12 @@ class Isola {
       f[1] = (dy + x * dx * _k * 2.0) * _r;
       const S u = z[2] / _r;
       const S v = z[3] / _r;
+      const S radius = sqrt(s + 1.0);
       const S along = lam - u * u - v * v + _g;
       const S mean = (along - 1.0) * 0.5;
       const S half = (along + 1.0) * 0.5;
-      f[2] = (mean * u + half * (x * u + y * v) - v * turn * 0.5) * _w * _r;
-      f[3] = (mean * v + half * (y * u - x * v) + u * turn * 0.5) * _w * _r;
+      f[2] = (mean * u + half * (x * u + y * v) / radius - v * turn * 0.5) * _w * _r;
+      f[3] = (mean * v + half * (y * u - x * v) / radius + u * turn * 0.5) * _w * _r;
     }
 
    private:
