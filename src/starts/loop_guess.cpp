@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
 #include <boost/math/interpolators/makima.hpp>
 
 #include "orbweaver/core/error.hpp"
@@ -152,7 +153,12 @@ GuessCurve curve_through(const systems::System& system, const std::vector<double
     for (const Spline& spline : *splines) out.push_back(spline(begin + time));
     return out;
   };
-  return curve_of(system, state, period, period / loop::time_sample_count);
+  try {
+    return curve_of(system, state, period, period / loop::time_sample_count);
+  } catch (const core::NumericalError& error) {
+    throw core::InputError(
+        fmt::format("expected states between which the field can be followed, got: {}", error.what()));
+  }
 }
 
 }  // namespace orbweaver::starts

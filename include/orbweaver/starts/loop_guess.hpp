@@ -21,6 +21,7 @@ namespace orbweaver::starts {
 /// The curve through states at any ascending times within a period, at least four; neighbours differ by less than half
 /// a turn of each angle, whole turns apart. A last state a whole period after the first one says how the curve closes;
 /// otherwise it closes along less than half a turn. Between the times it runs along a cubic spline (Akima's, modified).
+/// Throws InputError where the field along it is not finite.
 [[nodiscard]] GuessCurve curve_through(const systems::System& system, const std::vector<double>& times,
                                        std::vector<std::vector<double>> states, double period);
 

@@ -21,6 +21,7 @@
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/starts/loop_guess.hpp"
+#include "orbweaver/starts/multiple_shooting.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "orbweaver/survey/tree/undeclared.hpp"
 
@@ -73,6 +74,15 @@ void close_by_symmetry(const systems::Structure& structure, const GivenStart& gi
   }
 }
 
+starts::Integrator integrator_of(const systems::System& system) {
+  return {[&system](const std::vector<double>& state, double time) {
+            return certificate::integrate(system, state, time, guess_tolerance);
+          },
+          [&system](const std::vector<double>& state, double time) {
+            return certificate::transitions(system, {state}, time, guess_tolerance).front();
+          }};
+}
+
 /// The part of a given start's trajectory that lies before its state.
 double time_before(const systems::System& system, const GivenStart& given) {
   return given.is_return() || system.structure().dissipative ? 0.0 : 0.5 * given.period;
@@ -84,13 +94,9 @@ double time_before(const systems::System& system, const GivenStart& given) {
 starts::GuessCurve trajectory_of(const systems::System& system, const std::vector<double>& point,
                                  const GivenStart& given) {
   const double before = time_before(system, given);
+  const starts::Advance advance = integrator_of(system).advance;
   const auto nodes_over = [&](double time) {
-    return starts::trajectory_nodes(
-        system,
-        [&](const std::vector<double>& state, double step) {
-          return certificate::integrate(system, state, step, guess_tolerance);
-        },
-        point, time, given.period * given.order / loop::time_sample_count);
+    return starts::trajectory_nodes(system, advance, point, time, given.period * given.order / loop::time_sample_count);
   };
   std::vector<starts::TrajectoryNode> nodes = nodes_over(given.period - before);
   if (before > 0.0) {
@@ -102,11 +108,31 @@ starts::GuessCurve trajectory_of(const systems::System& system, const std::vecto
   return starts::curve_through(std::move(nodes));
 }
 
+/// The curve of a given start, and its longest step.
+struct Given {
+  starts::GuessCurve curve;
+  double longest = 0.0;
+};
+Given curve_of(const systems::System& system, const SweepWork& work) {
+  const GivenStart& given = work.given.front();
+  const double longest = given.period * given.order / loop::time_sample_count;
+  if (given.guess.modes.empty()) return {trajectory_of(system, work.point, given), longest};
+  const auto state = [guess = given.guess](double time) { return loop::state_at(guess, time); };
+  return {starts::curve_of(system, state, given.period, longest), longest};
+}
+
+/// The guess as a loop. Where times that are spaced evenly do not resolve it, it is brought nearer to an orbit by
+/// multiple shooting first: to the harmonics of a loop an error is magnified by all that follows a close passage.
 loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
-  loop::Loop guess = given.guess.modes.empty()
-                         ? starts::loop_through(system.structure(), trajectory_of(system, work.point, given))
-                         : given.guess;
+  const bool is_trajectory = given.guess.modes.empty();
+  loop::Loop guess =
+      is_trajectory ? starts::loop_through(system.structure(), trajectory_of(system, work.point, given)) : given.guess;
+  if (given.from != GivenStart::From::archive && !guess.time_map.is_identity()) {
+    const Given from = curve_of(system, work);
+    guess = starts::loop_through(system.structure(),
+                                 starts::shot_through(system, integrator_of(system), from.curve, from.longest).curve);
+  }
   guess.parameters.clear();
   for (const std::string& name : system.family_scalars().free)
     guess.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
@@ -172,22 +198,22 @@ std::optional<continuation::Orbit> at_energy(const std::shared_ptr<const systems
 /// for where its period has no orbit near.
 continuation::Branch beside_energy(const std::shared_ptr<const systems::System>& system, const loop::Loop& guess,
                                    continuation::Options options) {
-  loop::TimeSamples samples = loop::time_samples(guess, 2 * guess.cutoff + 2);
+  const int nodes = 2 * guess.cutoff + 2;  // equidistant in s, whatever the time map
+  const loop::Samples states = loop::samples_of(guess, nodes);
+  const auto count = static_cast<std::size_t>(nodes);
   const auto d = static_cast<std::size_t>(guess.dimension);
-  const auto count = static_cast<std::size_t>(samples.count);
+  loop::TimeSamples gradients{guess.dimension, nodes, guess.period, std::vector<double>(d, 0.0),
+                              std::vector<double>(d * count)};
   std::vector<double> state(d);
   std::vector<double> gradient(d);
   for (std::size_t j = 0; j < count; ++j) {
-    for (std::size_t i = 0; i < d; ++i)
-      state[i] = samples.states[i * count + j] +
-                 samples.winding[i] * 2.0 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(count);
+    for (std::size_t i = 0; i < d; ++i) state[i] = states.states[i * count + j];
     system->conserved_gradient(0, state, gradient);
-    for (std::size_t i = 0; i < d; ++i) samples.states[i * count + j] = gradient[i];
+    for (std::size_t i = 0; i < d; ++i) gradients.states[i * count + j] = gradient[i];
   }
-  std::fill(samples.winding.begin(), samples.winding.end(), 0.0);
   continuation::Start start;
   start.base = guess;
-  start.direction = {loop::with_cutoff(loop::interpolant(samples), guess.cutoff).modes, {0.0}};
+  start.direction = {loop::with_cutoff(loop::interpolant(gradients), guess.cutoff).modes, {0.0}};
   options.start_amplitude = beside_guess;
   return {system, start, std::move(options)};
 }
@@ -285,28 +311,24 @@ std::string advice_for_closed(const systems::System& system, const std::vector<d
       directions, directions == 1 ? "" : "s");
 }
 
-/// Where along its guess the motion is fastest, as a text: there a correction is decided.
+/// Where along its guess the motion is fastest, and what is not reached where, as a text.
 std::string fastest_text(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
   const double unit = system.scales().time;
   try {
-    const loop::Loop& guess = given.guess;
-    const starts::GuessCurve curve = guess.modes.empty()
-                                         ? trajectory_of(system, work.point, given)
-                                         : starts::curve_of(
-                                               system, [&](double time) { return loop::state_at(guess, time); },
-                                               given.period, given.period / loop::time_sample_count);
+    const auto [curve, longest] = curve_of(system, work);
     const starts::GuessCurve::Fastest fastest = curve.fastest();
-    const double begin = guess.modes.empty() ? time_before(system, given) : 0.0;
+    const double begin = given.guess.modes.empty() ? time_before(system, given) : 0.0;
     std::string text = fmt::format(
-        "; of its guess, of period {:.9g}, the motion is fastest at t = {:.6g}, where it turns "
-        "in a time of {:.2g}",
+        "; along its guess, of period {:.9g}, the motion is fastest at t = {:.6g}, where it turns in a time of {:.2g}",
         curve.period * unit, (fastest.time - begin) * unit, unit / fastest.rate);
     const std::vector<systems::Guard>& guards = system.structure().guards;
     for (std::size_t k = 0; k < guards.size(); ++k)
       text += fmt::format("{}{} = {:.3g}", k == 0 ? " with " : ", ", guards[k].name,
                           system.guard(static_cast<int>(k), curve.state(fastest.time)));
-    return text;
+    const starts::ShotCurve shot = starts::shot_through(system, integrator_of(system), curve, longest);
+    return text + fmt::format("; multiple shooting leaves pieces of it open by {:.2g}, most at t = {:.6g}", shot.missed,
+                              (shot.missed_at - begin) * unit);
   } catch (const core::NumericalError& error) {
     return fmt::format("; its guess: {}", error.what());
   }

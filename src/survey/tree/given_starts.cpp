@@ -112,8 +112,12 @@ SweepWork work_of(const scene::LoopStart& start, std::size_t n, const systems::S
   given.told = entry_text("loops", n);
   if (start.samples.times.empty())
     throw core::InputError(given.told + ": a stored scene does not hold it; survey the scene's file");
-  given.guess = starts::loop_through(
-      system.structure(), starts::curve_through(system, start.samples.times, start.samples.states, start.period));
+  try {
+    given.guess = starts::loop_through(
+        system.structure(), starts::curve_through(system, start.samples.times, start.samples.states, start.period));
+  } catch (const core::InputError& error) {
+    throw core::InputError(fmt::format("{}: {}", given.told, error.what()));
+  }
   given.period = start.period;
   work.point = start.samples.states.front();
   return work;
