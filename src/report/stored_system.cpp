@@ -18,6 +18,11 @@ std::shared_ptr<const systems::System> system_of(const archive::Header& header) 
   std::map<std::string, double> parameters;
   for (std::size_t i = 0; i < header.parameter_names.size(); ++i)
     parameters[header.parameter_names[i]] = header.parameter_values[i];
+  const auto system = systems::make_system(header.system, parameters, header.effects);
+  if (system->info().state_names == header.state_names) return system;
+  // Which coordinates follow from totals: those that the rows do not have.
+  for (const std::string& name : info_of(header)->state_names)
+    parameters.insert({name, std::count(header.state_names.begin(), header.state_names.end(), name) == 0 ? 1.0 : 0.0});
   return systems::make_system(header.system, parameters, header.effects);
 }
 

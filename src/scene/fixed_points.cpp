@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/systems/reduced_system.hpp"
 #include "suggest.hpp"
 #include "units.hpp"
 
@@ -47,6 +48,33 @@ double read_value(const Field& field, bool angle) {
   return angle ? radians(value) : value;
 }
 
+/// The coordinates of a system that is handed out with fewer, and which of them it has; empty where it has others.
+struct Whole {
+  const systems::System* system = nullptr;
+  std::vector<std::size_t> kept;
+};
+
+/// Lists of as many entries as the whole system has coordinates are told in those.
+Whole told_in(const systems::System& system, std::size_t entries) {
+  Whole out{systems::whole_of(system), {}};
+  if (out.system == nullptr || entries != out.system->info().state_names.size()) return {};
+  const std::vector<std::string>& all = out.system->info().state_names;
+  for (const std::string& name : system.info().state_names) {
+    const auto found = std::find(all.begin(), all.end(), name);
+    if (found == all.end()) return {};
+    out.kept.push_back(static_cast<std::size_t>(found - all.begin()));
+  }
+  return out;
+}
+
+template <class T>
+std::vector<T> kept_of(std::vector<T> all, const Whole& whole) {
+  if (whole.system == nullptr) return all;
+  std::vector<T> out;
+  for (const std::size_t i : whole.kept) out.push_back(std::move(all[i]));
+  return out;
+}
+
 void check_size(const Field& field, std::size_t size, const systems::System& system) {
   if (size == 0 || size > system.info().state_names.size())
     field.fail(fmt::format("1 to {} entries, for the coordinates {} in this order", system.dimension(),
@@ -72,7 +100,16 @@ std::optional<std::size_t> repeated(const std::vector<double>& values, bool angl
 }
 
 void read_grid(const Field& field, const systems::System& system, FixedPoints& points) {
-  const std::vector<Field> coordinates = field.list(examples(system).grid);
+  std::vector<Field> coordinates = field.list(examples(system).grid);
+  const Whole whole = told_in(system, coordinates.size());
+  for (std::size_t i = 0; i < coordinates.size() && whole.system != nullptr; ++i) {
+    const bool is_kept = std::find(whole.kept.begin(), whole.kept.end(), i) != whole.kept.end();
+    if (const std::size_t values = coordinates[i].list("[0]").size(); !is_kept && values != 1)
+      coordinates[i].fail(
+          fmt::format("one value of {}, which follows from what the system keeps", whole.system->info().state_names[i]),
+          fmt::format("{}", values), "give a scene for each value of what is kept");
+  }
+  coordinates = kept_of(std::move(coordinates), whole);
   check_size(field, coordinates.size(), system);
   double count = 1;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -92,7 +129,9 @@ void read_grid(const Field& field, const systems::System& system, FixedPoints& p
 }
 
 std::vector<double> read_point(const Field& key, const systems::System& system) {
-  const std::vector<Field> coordinates = key.list(examples(system).point);
+  std::vector<Field> coordinates = key.list(examples(system).point);
+  const Whole whole = told_in(system, coordinates.size());
+  coordinates = kept_of(std::move(coordinates), whole);
   check_size(key, coordinates.size(), system);
   std::vector<double> point;
   for (const Field& coordinate : coordinates)

@@ -33,6 +33,7 @@ Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& 
   const Keys keys(root, smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), folder, scene.system);
+  if (const auto starts = keys.find("starts")) take_place(*starts, scene.system);
   read_family_scalars(keys.find("continuation"), scene.system);
   const auto bound = bound_system(scene.system);
   const systems::System& system = *bound;

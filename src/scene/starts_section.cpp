@@ -1,6 +1,7 @@
 #include "starts_section.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -190,6 +191,41 @@ std::string name_of(OrbitStart::Near near) {
     case OrbitStart::Near::step: break;
   }
   return "step";
+}
+
+void take_place(const Field& starts, SystemChoice& choice) {
+  const std::shared_ptr<const systems::System> system = bound_system(choice);
+  const systems::System* whole = systems::whole_of(*system);
+  if (whole == nullptr || system->structure().symplectic) return;
+  const std::vector<std::string>& coordinates = whole->info().state_names;
+  const auto entry = [](const Field& map, const std::string& key) -> std::optional<Field> {
+    for (const Field::Entry& found : map.entries("{}"))
+      if (found.key.plain_scalar() == key) return found.value;
+    return std::nullopt;
+  };
+  try {
+    std::vector<std::vector<Field>> states;
+    if (const auto points = entry(starts, "fixed_points"))
+      if (const auto grid = entry(*points, "grid")) {
+        std::vector<Field>& first = states.emplace_back();
+        for (const Field& values : grid->list("[[1], [0]]"))
+          if (const std::vector<Field> list = values.list("[1]"); !list.empty()) first.push_back(list.front());
+      }
+    if (const auto given = entry(starts, "states"))
+      for (const Field& one : given->list("[{state: [1, 0], period: 6.3}]"))
+        if (const auto state = entry(one, "state")) states.push_back(state->list("[1, 0]"));
+    if (const auto given = entry(starts, "recurrences"))
+      if (const auto state = entry(*given, "state")) states.push_back(state->list("[1, 0]"));
+    for (const std::vector<Field>& state : states) {
+      if (state.size() != coordinates.size()) continue;
+      std::map<std::string, double> place;
+      for (std::size_t i = 0; i < state.size(); ++i) place[coordinates[i]] = state[i].number({.example = "1"});
+      choice.parameters.insert(place.begin(), place.end());
+      return;
+    }
+  } catch (const core::InputError&) {
+    return;
+  }
 }
 
 void read_starts(const Field& field, const systems::System& system, const std::optional<std::filesystem::path>& folder,

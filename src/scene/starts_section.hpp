@@ -10,6 +10,11 @@
 
 namespace orbweaver::scene {
 
+/// Of a system that is handed out with fewer coordinates: where the grid's first point, the first state or the
+/// trajectory's has all of them, they go into the choice's parameters, as the state at which linear totals have the
+/// values that are held (systems::HeldTotals). What is not right is left to the readers of the starts.
+void take_place(const Field& starts, SystemChoice& choice);
+
 /// `starts:`. Files are told from `folder`; none: those of a stored scene, which are not read.
 void read_starts(const Field& field, const systems::System& system, const std::optional<std::filesystem::path>& folder,
                  Scene& scene);

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -19,19 +17,18 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Complex = std::complex<double>;
 
 /// A pivot, beside entries of 1, that is smaller is rounding's.
 constexpr double dependent = 1e-13;
 /// Rounds in which rows and columns are scaled to entries of 1 at most. Not measured.
 constexpr int scaling_rounds = 3;
-/// An imaginary part below this, in parts of the largest eigenvalue, is rounding's: of double real ones. Not measured.
+/// An imaginary part below this, in parts of the eigenvalue's size, is rounding's: of double real ones. Not measured.
 constexpr double real_to_rounding = 1e-11;
 /// A step over which no eigenvalue changes its sign, but one comes near zero and turns, is halved so often.
 constexpr int most_looks = 6;
 /// Branch points nearer than this, relative as places are known, are one.
 constexpr double one_place = 1e-8;
-/// Of the largest eigenvalue: what one may be at a branch point that was located. Not measured.
+/// Of its size: what an eigenvalue may be at a branch point that was located. Not measured.
 constexpr double zero_eigenvalue = 1e-7;
 /// Zeros within the last piece of a step, in parts of it.
 constexpr double located_in_piece = 1e-10;
@@ -64,46 +61,54 @@ Determinant determinant_of(MatrixXd matrix) {
   return out;
 }
 
+/// A real eigenvalue and what its rounding is relative to.
+struct Real {
+  double value = 0.0;
+  double size = 0.0;
+  [[nodiscard]] bool may_be_zero() const { return std::abs(value) <= at_end * size; }
+};
+
 /// A place on the curve and what tells there whether others pass.
 struct Looked {
   CurveNode node;
-  std::vector<double> real;  ///< eigenvalues, the largest first
-  int to_the_right = 0;      ///< eigenvalues of positive real part
-  double least_pair = 0.0;   ///< modulus of the real part of pairs, the least
-  double largest = 0.0;      ///< modulus of eigenvalues
-  int orientation = 0;       ///< the sign of the determinant of the bordered equation; 0 where rounding has it
+  std::vector<Real> real;   ///< eigenvalues, the largest first
+  int to_the_right = 0;     ///< eigenvalues of positive real part
+  double least_pair = 0.0;  ///< modulus of the real part of pairs, the least
+  int orientation = 0;      ///< the sign of the determinant of the bordered equation; 0 where rounding has it
   /// Of eigenvalues in that order: whether it is zero because another curve passes just here.
-  [[nodiscard]] bool is_zero(std::size_t k) const { return orientation == 0 && std::abs(real[k]) <= at_end * largest; }
+  [[nodiscard]] bool is_zero(std::size_t k) const { return orientation == 0 && real[k].may_be_zero(); }
 };
 
-std::vector<double> real_ones(const Eigen::VectorXcd& values) {
-  const double bound = real_to_rounding * values.cwiseAbs().maxCoeff();
-  std::vector<double> out;
-  for (const Complex& value : values)
-    if (std::abs(value.imag()) <= bound) out.push_back(value.real());
-  std::sort(out.begin(), out.end(), std::greater<>());
+bool is_real(const GradedSpectrum& spectrum, Index i) {
+  return std::abs(spectrum.values(i).imag()) <= real_to_rounding * spectrum.sizes(i);
+}
+
+std::vector<Real> real_ones(const GradedSpectrum& spectrum) {
+  std::vector<Real> out;
+  for (Index i = 0; i < spectrum.values.size(); ++i)
+    if (is_real(spectrum, i)) out.push_back({spectrum.values(i).real(), spectrum.sizes(i)});
+  std::sort(out.begin(), out.end(), [](const Real& a, const Real& b) { return a.value > b.value; });
   return out;
 }
 
-double least_modulus(const std::vector<double>& values) {
+double least_modulus(const std::vector<Real>& real) {
   double least = std::numeric_limits<double>::infinity();
-  for (const double value : values) least = std::min(least, std::abs(value));
+  for (const Real& one : real) least = std::min(least, std::abs(one.value));
   return least;
 }
 
 Looked looked_at(const CurveEquations& curve, CurveNode node) {
-  const Eigen::VectorXcd values = curve.eigenvalues(node.x);
+  const GradedSpectrum spectrum = curve.eigensystem(node.x, false);
   Looked out;
-  out.largest = values.cwiseAbs().maxCoeff();
-  out.real = real_ones(values);
+  out.real = real_ones(spectrum);
   out.least_pair = std::numeric_limits<double>::infinity();
-  for (const Complex& value : values) {
-    if (value.real() > 0.0) ++out.to_the_right;
-    if (std::abs(value.imag()) > real_to_rounding * out.largest)
-      out.least_pair = std::min(out.least_pair, std::abs(value.real()));
+  for (Index i = 0; i < spectrum.values.size(); ++i) {
+    if (spectrum.values(i).real() > 0.0) ++out.to_the_right;
+    if (!is_real(spectrum, i)) out.least_pair = std::min(out.least_pair, std::abs(spectrum.values(i).real()));
   }
   const Determinant determinant = determinant_of(curve.bordered(node.x, node.direction));
-  const bool is_zero = determinant.least_pivot <= dependent && least_modulus(out.real) <= at_end * out.largest;
+  const bool is_zero = determinant.least_pivot <= dependent &&
+                       std::any_of(out.real.begin(), out.real.end(), [](const Real& r) { return r.may_be_zero(); });
   out.orientation = is_zero ? 0 : determinant.sign;
   out.node = std::move(node);
   return out;
@@ -171,7 +176,7 @@ class Search {
   [[nodiscard]] static std::vector<std::size_t> passing_between(const Looked& a, const Looked& b) {
     std::vector<std::size_t> out;
     for (std::size_t k = 0; k < a.real.size(); ++k)
-      if (!are_of_one_sign(a.real[k], b.real[k]) && !a.is_zero(k) && !b.is_zero(k)) out.push_back(k);
+      if (!are_of_one_sign(a.real[k].value, b.real[k].value) && !a.is_zero(k) && !b.is_zero(k)) out.push_back(k);
     return out;
   }
 
@@ -192,8 +197,9 @@ class Search {
     for (std::size_t k = 0; k < a.real.size(); ++k) {
       if (std::find(passing.begin(), passing.end(), k) != passing.end()) continue;
       // Halfway to zero from an end it is never nearer to zero than that, unless it slows down, turns or passes.
-      if (!are_of_one_sign(a.real[k], middle->real[k]) ||
-          2.0 * std::abs(middle->real[k]) < std::max(std::abs(a.real[k]), std::abs(b.real[k]))) {
+      const double there = middle->real[k].value;
+      if (!are_of_one_sign(a.real[k].value, there) ||
+          2.0 * std::abs(there) < std::max(std::abs(a.real[k].value), std::abs(b.real[k].value))) {
         between(a, *middle, looks + 1);
         return between(*middle, b, looks + 1);
       }
@@ -201,9 +207,11 @@ class Search {
   }
 
   /// Unless an eigenvalue has another sign by a jump, or a pole. At the place itself all may be zero.
-  void add_if_singular(const std::optional<VectorXd>& place, const Looked& a, const Looked& b) {
-    const double bound = zero_eigenvalue * std::max(a.largest, b.largest);
-    if (place && _curve.eigenvalues(*place).cwiseAbs().minCoeff() <= bound)
+  void add_if_singular(const std::optional<VectorXd>& place) {
+    const auto is_singular = [&](const GradedSpectrum& at) {
+      return (at.values.cwiseAbs().array() <= zero_eigenvalue * at.sizes.array()).any();
+    };
+    if (place && is_singular(_curve.eigensystem(*place, false)))
       add(*place);
     else
       _found.is_undecided = true;
@@ -212,13 +220,11 @@ class Search {
   /// By the determinant, where no eigenvalue alone tells: the curve turns as well, or real ones meet.
   void add_one(const Looked& a, const Looked& b) {
     const double size = determinant_of(_curve.bordered(a.node.x, a.node.direction)).log;
-    add_if_singular(zero_beside_curve(_curve, a.node, b.node,
-                                      [&](const VectorXd& at) {
-                                        constexpr double most = 700.0;  // a double's
-                                        const Determinant here = determinant_of(_curve.bordered(at, a.node.direction));
-                                        return here.sign * std::exp(std::clamp(here.log - size, -most, most));
-                                      }),
-                    a, b);
+    add_if_singular(zero_beside_curve(_curve, a.node, b.node, [&](const VectorXd& at) {
+      constexpr double most = 700.0;  // a double's
+      const Determinant here = determinant_of(_curve.bordered(at, a.node.direction));
+      return here.sign * std::exp(std::clamp(here.log - size, -most, most));
+    }));
   }
 
   /// By their eigenvalues, within a piece so short that its cubic is the curve to rounding.
@@ -227,8 +233,8 @@ class Search {
     for (const std::size_t k : passing) {
       const auto found = numerics::locate_root(
           [&](double share) {
-            const std::vector<double> real = real_ones(_curve.eigenvalues(cubic_between(a.node, b.node, share)));
-            return real.size() == a.real.size() ? real[k] : std::numeric_limits<double>::quiet_NaN();
+            const std::vector<Real> real = real_ones(_curve.eigensystem(cubic_between(a.node, b.node, share), false));
+            return real.size() == a.real.size() ? real[k].value : std::numeric_limits<double>::quiet_NaN();
           },
           0.0, 1.0, located_in_piece);
       if (found)
@@ -246,7 +252,7 @@ class Search {
       shares.erase(std::min_element(shares.begin(), shares.end(),
                                     [&](double x, double y) { return std::abs(x - at) < std::abs(y - at); }));
     }
-    for (const double share : shares) add_if_singular(cubic_between(a.node, b.node, share), a, b);
+    for (const double share : shares) add_if_singular(cubic_between(a.node, b.node, share));
   }
 
   const CurveEquations& _curve;

@@ -69,8 +69,8 @@ MatrixXd CurveEquations::bordered(const VectorXd& x, const VectorXd& near) const
   return matrix;
 }
 
-numerics::Eigensystem CurveEquations::eigensystem(const VectorXd& x, bool with_vectors) const {
-  std::optional<numerics::Eigensystem> system = numerics::eigensystem(at(x).jacobian, with_vectors);
+GradedSpectrum CurveEquations::eigensystem(const VectorXd& x, bool with_vectors) const {
+  std::optional<GradedSpectrum> system = graded_spectrum(at(x).jacobian, with_vectors);
   if (!system)
     throw core::NumericalError(
         fmt::format("the eigenvalues of the Jacobian at the equilibrium at {} = {:.9g}: the QR "

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "orbweaver/numerics/eigenvalues.hpp"
+#include "graded_spectrum.hpp"
 #include "orbweaver/numerics/locate.hpp"
 #include "orbweaver/starts/equilibrium_curve.hpp"
 
@@ -19,7 +19,7 @@ namespace orbweaver::starts {
 inline constexpr double converged = 1e-13;
 /// Zeros are located to this, in parts of a step.
 inline constexpr double located_to = 1e-12;
-/// Of an eigenvalue: a real part of the curve's first or last equilibrium that may be rounding's.
+/// Of what an eigenvalue's rounding is relative to: a real part, or an eigenvalue, that may be rounding's.
 inline constexpr double at_end = 1e-12;
 /// A branch point is located to this, relative, and then by a parabola. There rounding is 1e5 times as large across the
 /// curve.
@@ -50,7 +50,7 @@ class CurveEquations {
 
   [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::VectorXd& x) const { return eigensystem(x, false).values; }
   /// Throws NumericalError where the QR iteration does not converge.
-  [[nodiscard]] numerics::Eigensystem eigensystem(const Eigen::VectorXd& x, bool with_vectors) const;
+  [[nodiscard]] GradedSpectrum eigensystem(const Eigen::VectorXd& x, bool with_vectors) const;
 
   [[nodiscard]] Equilibrium equilibrium(const Eigen::VectorXd& x) const { return {{x.data(), x.data() + _d}, x(_d)}; }
   [[nodiscard]] bool is_within(double parameter) const {

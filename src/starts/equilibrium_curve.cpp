@@ -27,6 +27,8 @@ constexpr int few_steps = 4;
 constexpr double least_cosine = 0.9;
 /// Steps after which a curve may have come back.
 constexpr std::size_t least_round = 8;
+/// Of the length of state and parameter: the largest step far out, where scales of the neighbourhood say little.
+constexpr double step_far_out = 0.01;
 
 /// A point that was located between two nodes.
 struct Between {
@@ -44,14 +46,18 @@ class Side {
     const EquilibriumCurveOptions& options = _curve.options();
     double length = options.largest_step;
     while (_end.empty()) {
-      if (static_cast<int>(_nodes.size()) >= options.most_points)
-        _end = fmt::format("{} points", options.most_points);
-      else if (!step(length))
+      if (static_cast<int>(_nodes.size()) >= options.most_points) {
+        _end = fmt::format("{} points, at {} = {:.9g}: it goes on", options.most_points, _curve.name(),
+                           _nodes.back().x(_curve.dimension()) * _curve.unit());
+        _is_cut = true;
+      } else if (!step(length)) {
         break;
+      }
     }
   }
   [[nodiscard]] const std::vector<CurveNode>& nodes() const { return _nodes; }
   [[nodiscard]] const std::string& end() const { return _end; }
+  [[nodiscard]] bool is_cut() const { return _is_cut; }
 
  private:
   bool step(double& length) {
@@ -94,13 +100,15 @@ class Side {
       _end = "closed curve";
       return false;
     }
-    if (steps <= few_steps) length = std::min(options.largest_step, growth * length);
+    const double largest = std::max(options.largest_step, step_far_out * _nodes.back().x.norm());
+    if (steps <= few_steps) length = std::min(largest, growth * length);
     return true;
   }
 
   const CurveEquations& _curve;
   std::vector<CurveNode> _nodes;
   std::string _end;
+  bool _is_cut = false;
 };
 
 }  // namespace
@@ -128,6 +136,7 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
   nodes.insert(nodes.end(), up.nodes().begin() + 1, up.nodes().end());
   EquilibriumCurve out;
   out.ends = {down.end(), up.end()};
+  out.are_cut = {down.is_cut(), up.is_cut()};
   const std::size_t begin = down.nodes().size() - 1;
   const auto length = [&](std::size_t from, std::size_t to) {
     double sum = 0.0;
@@ -155,7 +164,9 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     if ((a.x(d) - started) * (b.x(d) - started) < 0.0)
       if (const auto again = zero_between(curve, a, b, [&](const VectorXd& at) { return at(d) - started; }))
         between.push_back({*again, EquilibriumKind::came_back});
-    for (auto& [place, point] : hopf_points(curve, a, b, {n == 1, n + 1 == nodes.size()})) {
+    HopfPoints hopf = hopf_points(curve, a, b, {n == 1, n + 1 == nodes.size()});
+    if (std::isnan(out.stays)) out.stays = hopf.stays;
+    for (auto& [place, point] : hopf.found) {
       const double within = n > begin ? (place - a.x).norm() : (b.x - place).norm();
       point.distance = within + (n > begin ? length(begin, n - 1) : length(n, begin));
       between.push_back({place, EquilibriumKind::hopf, point.period});
@@ -168,6 +179,7 @@ EquilibriumCurve follow_equilibrium(const systems::System& system, std::span<con
     if (n == begin) out.start = out.points.size();
     out.points.push_back({curve.equilibrium(b.x)});
     out.points.back().may_branch_before = branching.is_undecided;
+    out.points.back().may_pass_before = hopf.is_undecided;
   }
   return out;
 }

@@ -21,7 +21,7 @@ using Complex = std::complex<double>;
 constexpr double same_place = 1e-9;
 /// A step over which eigenvalues become real, or real ones complex, is halved so often.
 constexpr int most_halvings = 6;
-/// Of the largest eigenvalue: a pair whose sum is smaller than this cancels, and its real part is none.
+/// Of an eigenvalue's size: a pair whose sum is smaller than this cancels, and its real part is none.
 constexpr double cancels = 1e-6;
 
 /// The product of the sums of two eigenvalues, each divided by its moduli: real, and 0 at Hopf points.
@@ -37,12 +37,12 @@ double hopf_function(const CurveEquations& curve, const VectorXd& x) {
 /// Of the eigenvalues on the imaginary axis there the one nearest to `near`; none where only real ones cancel. Of a
 /// double one the vectors in their order, `taken` being passed over.
 std::optional<HopfPoint> hopf_at(const CurveEquations& curve, const VectorXd& x, Complex near, std::size_t taken) {
-  const numerics::Eigensystem system = curve.eigensystem(x, true);
+  const GradedSpectrum system = curve.eigensystem(x, true);
   const Eigen::VectorXcd& values = system.values;
-  const double largest = values.cwiseAbs().maxCoeff();
   std::vector<Index> on_axis;
   for (Index i = 0; i < values.size(); ++i)
-    if (values(i).imag() > cancels * largest && std::abs(values(i).real()) < cancels * largest) on_axis.push_back(i);
+    if (values(i).imag() > cancels * system.sizes(i) && std::abs(values(i).real()) < cancels * system.sizes(i))
+      on_axis.push_back(i);
   std::stable_sort(on_axis.begin(), on_axis.end(),
                    [&](Index i, Index l) { return std::abs(values(i) - near) < std::abs(values(l) - near); });
   if (on_axis.size() <= taken) return std::nullopt;  // two real eigenvalues cancel: a neutral saddle
@@ -87,6 +87,22 @@ std::size_t nearest_of(const std::vector<Complex>& values, Complex to) {
   return static_cast<std::size_t>(found - values.begin());
 }
 
+/// Whether a real part is rounding's.
+bool may_be_on_axis(Complex value, double size) { return std::abs(value.real()) <= at_end * size; }
+
+/// Whether the eigenvalue nearest to `near` is one whose real part is rounding's.
+bool stays_at(const GradedSpectrum& spectrum, Complex near) {
+  Index nearest = 0;
+  for (Index i = 1; i < spectrum.values.size(); ++i)
+    if (std::abs(spectrum.values(i) - near) < std::abs(spectrum.values(nearest) - near)) nearest = i;
+  return may_be_on_axis(spectrum.values(nearest), spectrum.sizes(nearest));
+}
+
+/// Whether an eigenvalue is zero to rounding.
+bool has_zero(const GradedSpectrum& spectrum) {
+  return (spectrum.values.cwiseAbs().array() <= at_end * spectrum.sizes.array()).any();
+}
+
 /// An eigenvalue above the real axis and what it becomes.
 struct Path {
   Complex from;
@@ -112,22 +128,27 @@ std::vector<Path> paths_between(std::vector<Complex> from, std::vector<Complex> 
 
 /// Hopf points between two nodes, each where one eigenvalue crosses the imaginary axis; where eigenvalues have become
 /// real, or real ones complex, the two halves are looked at, and at last the product of all sums.
-std::vector<LocatedHopf> hopf_between(const CurveEquations& curve, const CurveNode& a, const CurveNode& b,
-                                      int halvings) {
-  const Eigen::VectorXcd at_a = curve.eigenvalues(a.x);
-  const Eigen::VectorXcd at_b = curve.eigenvalues(b.x);
-  const std::vector<Complex> from = oscillating(at_a);
-  const std::vector<Complex> to = oscillating(at_b);
-  std::vector<LocatedHopf> found;
+HopfPoints hopf_between(const CurveEquations& curve, const CurveNode& a, const CurveNode& b, int halvings) {
+  const GradedSpectrum at_a = curve.eigensystem(a.x, false);
+  const GradedSpectrum at_b = curve.eigensystem(b.x, false);
+  const std::vector<Complex> from = oscillating(at_a.values);
+  const std::vector<Complex> to = oscillating(at_b.values);
+  HopfPoints out;
+  // Of one that is zero all along it is not told what it does.
+  out.is_undecided = has_zero(at_a) && has_zero(at_b);
+  std::vector<LocatedHopf>& found = out.found;
   const VectorXd chord = b.x - a.x;
-  const auto in_halves = [&]() -> std::optional<std::vector<LocatedHopf>> {
+  const auto in_halves = [&]() -> std::optional<HopfPoints> {
     int steps = 0;
     const auto middle =
         halvings < most_halvings ? curve.corrected(a.x + 0.5 * chord, chord.normalized(), steps) : std::nullopt;
     if (!middle) return std::nullopt;
     const CurveNode between{*middle, curve.direction(*middle, a.direction)};
-    std::vector<LocatedHopf> all = hopf_between(curve, a, between, halvings + 1);
-    for (auto& other : hopf_between(curve, between, b, halvings + 1)) all.push_back(std::move(other));
+    HopfPoints all = hopf_between(curve, a, between, halvings + 1);
+    HopfPoints more = hopf_between(curve, between, b, halvings + 1);
+    for (LocatedHopf& other : more.found) all.found.push_back(std::move(other));
+    all.is_undecided = all.is_undecided || more.is_undecided;
+    if (std::isnan(all.stays)) all.stays = more.stays;
     return all;
   };
   if (from.size() != to.size())
@@ -145,8 +166,19 @@ std::vector<LocatedHopf> hopf_between(const CurveEquations& curve, const CurveNo
       if (point) found.emplace_back(*place, std::move(*point));
     }
   };
+  // A place where a pair passes the axis is one alone.
+  const auto stays = [&](const Path& path) {
+    if (!stays_at(at_a, path.from) || !stays_at(at_b, path.to)) return false;
+    int steps = 0;
+    const auto middle = curve.corrected(a.x + 0.5 * chord, chord.normalized(), steps);
+    return middle && stays_at(curve.eigensystem(*middle, false), 0.5 * (path.from + path.to));
+  };
   std::size_t crossings = 0;
   for (const Path& path : paths_between(from, to)) {
+    if (stays(path)) {
+      out.stays = 2.0 * std::numbers::pi / path.from.imag();
+      continue;
+    }
     if (!path.crosses()) continue;
     ++crossings;
     const auto near = [&](const VectorXd& at) {
@@ -159,9 +191,10 @@ std::vector<LocatedHopf> hopf_between(const CurveEquations& curve, const CurveNo
     add(zero_between(curve, a, b, [&](const VectorXd& at) { return near(at).real(); }), near);
   }
   if (from.size() == to.size()) {  // where eigenvalues come near one another they may be taken for one another
-    std::optional<std::vector<LocatedHopf>> all;
-    if (found.size() < crossings) all = in_halves();
-    return all ? *std::move(all) : found;
+    if (found.size() == crossings) return out;
+    if (auto all = in_halves()) return *std::move(all);
+    out.is_undecided = true;
+    return out;
   }
   const auto product = [&](const VectorXd& at) { return hopf_function(curve, at); };
   const auto on_axis = [&](const VectorXd& at) {
@@ -172,12 +205,17 @@ std::vector<LocatedHopf> hopf_between(const CurveEquations& curve, const CurveNo
   };
   if (found.size() % 2 == 0 && (product(a.x) >= 0.0) != (product(b.x) >= 0.0))
     add(zero_between(curve, a, b, product), on_axis);
-  return found;
+  return out;
 }
 
-/// Hopf points at an end of the curve, where rounding has the eigenvalue on either side.
-void add_at_end(const CurveEquations& curve, const VectorXd& end, std::vector<LocatedHopf>& found) {
-  for (const Complex value : oscillating(curve.eigenvalues(end))) {
+/// Hopf points at an end of the curve, where rounding has the eigenvalue on either side, unless it has so at the node
+/// beside it.
+void add_at_end(const CurveEquations& curve, const VectorXd& end, const VectorXd& beside,
+                std::vector<LocatedHopf>& found) {
+  const GradedSpectrum at = curve.eigensystem(end, false);
+  const GradedSpectrum near = curve.eigensystem(beside, false);
+  for (const Complex value : oscillating(at.values)) {
+    if (stays_at(at, value) && stays_at(near, value)) continue;
     const bool is_known = std::any_of(found.begin(), found.end(), [&](const auto& known) {
       return are_one_place(known.first, end) &&
              std::abs(known.second.period - 2.0 * std::numbers::pi / value.imag()) <= same_place * known.second.period;
@@ -205,12 +243,12 @@ std::vector<LocatedHopf> in_order(std::vector<LocatedHopf> found, const CurveNod
 
 }  // namespace
 
-std::vector<LocatedHopf> hopf_points(const CurveEquations& curve, const CurveNode& a, const CurveNode& b,
-                                     CurveEnds at) {
-  std::vector<LocatedHopf> found = hopf_between(curve, a, b, 0);
-  if (at.first) add_at_end(curve, a.x, found);
-  if (at.last) add_at_end(curve, b.x, found);
-  return in_order(std::move(found), a, b);
+HopfPoints hopf_points(const CurveEquations& curve, const CurveNode& a, const CurveNode& b, CurveEnds at) {
+  HopfPoints out = hopf_between(curve, a, b, 0);
+  if (at.first) add_at_end(curve, a.x, b.x, out.found);
+  if (at.last) add_at_end(curve, b.x, a.x, out.found);
+  out.found = in_order(std::move(out.found), a, b);
+  return out;
 }
 
 }  // namespace orbweaver::starts

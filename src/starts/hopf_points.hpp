@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -18,9 +19,16 @@ struct CurveEnds {
   bool last = false;
 };
 
+struct HopfPoints {
+  std::vector<LocatedHopf> found;
+  /// Of a pair whose real part is rounding's at both nodes and between them, the period: it passes nothing, for
+  /// something holds it on the axis. NaN without one.
+  double stays = std::numeric_limits<double>::quiet_NaN();
+  bool is_undecided = false;  ///< whether eigenvalues pass the axis, rounding does not tell
+};
+
 /// Hopf points between two nodes of a curve of equilibria, along it; those at one place by their periods, the longest
 /// first. At an end of the curve also where rounding has the eigenvalue on either side.
-[[nodiscard]] std::vector<LocatedHopf> hopf_points(const CurveEquations& curve, const CurveNode& a, const CurveNode& b,
-                                                   CurveEnds at);
+[[nodiscard]] HopfPoints hopf_points(const CurveEquations& curve, const CurveNode& a, const CurveNode& b, CurveEnds at);
 
 }  // namespace orbweaver::starts

@@ -10,9 +10,9 @@
 #include <Eigen/Core>
 
 #include "drive_averaged.hpp"
+#include "graded_spectrum.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
-#include "orbweaver/numerics/eigenvalues.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 #include "second_derivatives.hpp"
@@ -26,7 +26,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Of the largest entry or eigenvalue of a balanced matrix: what is smaller is rounding, or the square root of it at a
+/// Of the largest entry of a balanced matrix, or an eigenvalue's size: what is smaller is rounding, or the square root of it at a
 /// Jordan block, and couples or scales nothing.
 constexpr double rounding_entry = 1e-10;
 constexpr double negligible_eigenvalue = 1e-7;
@@ -53,6 +53,22 @@ constexpr std::size_t most_grid_points = 64;
 struct LogScales {
   double time = std::numeric_limits<double>::quiet_NaN();
   VectorXd coordinates;
+};
+
+/// Geometric means, in logarithms, of what says something.
+class Mean {
+ public:
+  void add(double log) {
+    if (!std::isfinite(log)) return;
+    _sum += log;
+    _count += 1.0;
+  }
+  [[nodiscard]] bool any() const { return _count > 0.0; }
+  [[nodiscard]] double log() const { return _sum / _count; }
+
+ private:
+  double _sum = 0.0;
+  double _count = 0.0;
 };
 
 /// The Jacobian at one state, in balanced coordinates.
@@ -112,20 +128,25 @@ class LocalScales {
     return (matrix.cwiseAbs().array() < least).select(0.0, matrix);
   }
 
-  /// Geometric mean of the moduli of the eigenvalues that do not vanish.
+  /// Geometric mean of the moduli of the eigenvalues that do not vanish. In a dissipative system, if any oscillate, of
+  /// those: what decays faster is gone before an oscillation is over.
   [[nodiscard]] double mean_rate(const MatrixXd& balanced) {
-    const std::optional<numerics::Eigensystem> system = numerics::eigensystem(balanced, false);
-    if (!system) return 0.0;
-    const VectorXd moduli = system->values.cwiseAbs();
-    double sum = 0.0;
-    int count = 0;
-    for (const double modulus : moduli)
-      if (modulus > negligible_eigenvalue * moduli.maxCoeff()) {
-        sum += std::log2(modulus);
-        ++count;
+    const std::optional<GradedSpectrum> spectrum = graded_spectrum(balanced, false);
+    if (!spectrum) return 0.0;
+    Mean all;
+    Mean oscillating;
+    _invertible = true;
+    for (Index i = 0; i < spectrum->values.size(); ++i) {
+      const double modulus = std::abs(spectrum->values(i));
+      if (!(modulus > negligible_eigenvalue * spectrum->sizes(i))) {
+        _invertible = false;
+        continue;
       }
-    _invertible = count == moduli.size();
-    return count == 0 ? 0.0 : std::exp2(sum / count);
+      all.add(std::log2(modulus));
+      if (spectrum->values(i).imag() != 0.0) oscillating.add(std::log2(modulus));
+    }
+    const Mean& mean = _system.structure().dissipative && oscillating.any() ? oscillating : all;
+    return mean.any() ? std::exp2(mean.log()) : 0.0;
   }
 
   /// Osborne's balancing (1960, doi:10.1145/321043.321048): the scales s that make the sum of weights_il s_l^2/s_i^2
@@ -306,22 +327,6 @@ double log_quantity(const systems::System& system, int k, const VectorXd& point,
     }
   return sum / count;
 }
-
-/// Geometric means, in logarithms, over the states that say something.
-class Mean {
- public:
-  void add(double log) {
-    if (!std::isfinite(log)) return;
-    _sum += log;
-    _count += 1.0;
-  }
-  [[nodiscard]] bool any() const { return _count > 0.0; }
-  [[nodiscard]] double log() const { return _sum / _count; }
-
- private:
-  double _sum = 0.0;
-  double _count = 0.0;
-};
 
 systems::Scales scales_at(const systems::System& system, const std::vector<VectorXd>& states) {
   const auto d = static_cast<std::size_t>(system.dimension());

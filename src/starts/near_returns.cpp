@@ -11,6 +11,7 @@
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/numerics/two_pi.hpp"
 #include "orbweaver/systems/formulas.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
 #include "orbweaver/taylor/flow.hpp"
 
 namespace orbweaver::starts {
@@ -147,6 +148,41 @@ int order_of(const systems::AffineMap& map, const std::vector<int>& angles) {
 }
 
 }  // namespace
+
+systems::Scales trajectory_scales(const systems::System& system, const std::vector<double>& state,
+                                  const NearReturnOptions& options) {
+  const double part = std::min(options.time, periods_of_rate * options.period_to);
+  const Trajectory trajectory = sampled(system, state, part, samples_of_rate);
+  const auto count = static_cast<double>(trajectory.count());
+  const std::vector<std::size_t> first = systems::mixed_coordinates(system.structure());
+  std::vector<double> spread(trajectory.d, 0.0);  // squares, of all coordinates that go together
+  std::vector<double> rate(trajectory.d, 0.0);
+  std::vector<double> members(trajectory.d, 0.0);
+  for (std::size_t i = 0; i < trajectory.d; ++i) {
+    double mean = 0.0;
+    for (std::size_t n = 0; n < trajectory.count(); ++n) mean += trajectory.states[n * trajectory.d + i] / count;
+    for (std::size_t n = 0; n < trajectory.count(); ++n) {
+      spread[first[i]] += std::pow(trajectory.states[n * trajectory.d + i] - mean, 2) / count;
+      rate[first[i]] += std::pow(trajectory.fields[n * trajectory.d + i], 2) / count;
+    }
+    members[first[i]] += 1.0;
+  }
+  const auto nearest_power = [](double value) { return std::exp2(std::round(std::log2(value))); };
+  systems::Scales scales;
+  double square = 0.0;
+  double moving = 0.0;
+  for (std::size_t i = 0; i < trajectory.d; ++i) {
+    const double of_one = spread[first[i]] / members[first[i]];
+    const bool is_still = system.structure().is_angle(i) || !(of_one > 0.0) || !std::isfinite(of_one);
+    scales.coordinates.push_back(is_still ? 1.0 : nearest_power(std::sqrt(of_one)));
+    if (is_still) continue;
+    square += rate[first[i]] / spread[first[i]];
+    moving += 1.0;
+  }
+  if (square > 0.0) scales.time = nearest_power(std::sqrt(moving / square));
+  scales.conserved.assign(system.structure().conserved.size(), 1.0);
+  return scales;
+}
 
 std::vector<NearReturn> near_returns(const systems::System& system, const std::vector<double>& state,
                                      const NearReturnOptions& options) {

@@ -13,6 +13,7 @@
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "orbweaver/systems/undeclared_symmetries.hpp"
+#include "trial_states.hpp"
 
 namespace orbweaver::systems {
 
@@ -22,15 +23,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Relative to the terms that cancel. Rounding leaves some 1e-15; half the digits, as in identities.cpp, where a
-/// model's own terms cancel.
+/// Relative to the terms that cancel: rounding leaves some 1e-15.
 constexpr double to_rounding = 1e-10;
-constexpr double half_the_digits = 1.5e-8;
-/// Sizes of the states that are tried: a model's units may be far from its coordinates' values.
-constexpr double trial_sizes[] = {1.0, 0x1p-10, 0x1p-20, 0x1p-30, 0x1p10};
-constexpr int states_a_size = 8;
-/// Sweeps that bring rows and columns of the Jacobians to the size 1.
-constexpr int balancing_sweeps = 8;
 /// Of the largest determinant: among coordinates that will do, the first.
 constexpr double as_good = 0.1;
 constexpr std::size_t most_choices = 64;

@@ -10,7 +10,7 @@
 namespace orbweaver::systems {
 
 /// The conserved quantities of a system that are linear in its coordinates, Q_a = w_a . z + constant, and the
-/// translations that belong to them: all v with f(z + v) = f(z).
+/// translations that belong to them: all v with f(z + v) = f(z). Totals (LinearTotal) have none.
 struct LinearQuantities {
   std::vector<int> quantities;  ///< which of the structure's
   Eigen::MatrixXd motions;      ///< one a column, whole numbers; the identity in the rows `frame`

@@ -46,7 +46,11 @@ Numbers solved(std::vector<Numbers> left, Numbers right, const std::vector<std::
 class Reduction {
  public:
   Reduction(const System& whole, const Formulas& plain, const LinearQuantities& linear, const Chart& chart)
-      : _plain(plain), _linear(linear), _chart(chart), _n(chart.kept.size()), _d(chart.kept.size() + 2 * quantities()) {
+      : _plain(plain),
+        _linear(linear),
+        _chart(chart),
+        _n(chart.kept.size()),
+        _d(static_cast<std::size_t>(chart.states.rows())) {
     for (std::size_t p = 0; p < plain.parameters.size(); ++p)
       _parameters.push_back(_recording.parameter(static_cast<int>(p)));
     _inputs.assign(_d * (1 + _d), Recorded(0.0));
@@ -166,7 +170,7 @@ class Reduction {
     Numbers x;
     for (const std::size_t i : _chart.kept) {
       Recorded sum = whole(i);
-      for (std::size_t a = 0; a < quantities(); ++a) {
+      for (std::size_t a = 0; a < _linear.frame.size(); ++a) {
         const double factor = _linear.motions(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a));
         if (factor != 0.0) sum -= whole(static_cast<std::size_t>(_linear.frame[a])) * factor;
       }

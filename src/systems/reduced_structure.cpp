@@ -46,8 +46,9 @@ class Descent {
   }
 
   [[nodiscard]] std::optional<AffineMap> operator()(const AffineMap& map) const {
-    const MatrixXd moved = map.matrix * _linear.motions;
-    if (!is_zero(moved - _linear.motions * rows_of(moved, _linear.frame), moved)) return std::nullopt;
+    if (const MatrixXd moved = map.matrix * _linear.motions;
+        moved.cols() > 0 && !is_zero(moved - _linear.motions * rows_of(moved, _linear.frame), moved))
+      return std::nullopt;
     const MatrixXd& w = _chart.gradients;
     const MatrixXd pulled = map.matrix.transpose() * w;
     const MatrixXd mixed = _chart.from_values.transpose() * rows_of(pulled, _linear.redundant);  // transposed
@@ -144,7 +145,8 @@ Chart chart_of(const System& whole, const LinearQuantities& linear, const std::o
     const auto i = static_cast<Index>(chart.kept[static_cast<std::size_t>(c)]);
     chart.states(i, c) = 1.0;
     chart.rates(c, i) = 1.0;
-    for (Index a = 0; a < k; ++a) chart.rates(c, linear.frame[static_cast<std::size_t>(a)]) = -linear.motions(i, a);
+    for (std::size_t a = 0; a < linear.frame.size(); ++a)
+      chart.rates(c, linear.frame[a]) = -linear.motions(i, static_cast<Index>(a));
     kept_gradients.row(c) = chart.gradients.row(i);
   }
   const MatrixXd follows = -chart.from_values * kept_gradients.transpose();
@@ -177,7 +179,7 @@ double skewness(const System& whole, const LinearQuantities& linear, const Chart
 std::optional<Straightening> straightening_of(const System& whole, const LinearQuantities& linear, const Chart& chart) {
   const Structure& structure = whole.structure();
   // Of the whole length, what motions and quantities leave.
-  MatrixXd gone(structure.dimension, 2 * linear.motions.cols());
+  MatrixXd gone(structure.dimension, linear.motions.cols() + chart.gradients.cols());
   gone << linear.motions, chart.gradients;
   const MatrixXd basis =
       Eigen::HouseholderQR<MatrixXd>(gone).householderQ() * MatrixXd::Identity(structure.dimension, gone.cols());
@@ -215,6 +217,9 @@ Structure reduced_structure(const System& whole, const LinearQuantities& linear,
   for (const int quantity : chart.others) to.conserved.push_back(from.conserved[static_cast<std::size_t>(quantity)]);
   to.guards = from.guards;
   to.symplectic = from.symplectic;
+  to.dissipative = from.dissipative;
+  to.driven = from.driven;
+  to.decays = from.decays;
 
   std::set<std::string> names{"1"};
   std::vector<Declared> left;
@@ -270,11 +275,13 @@ ModelInfo reduced_info(const System& whole, const LinearQuantities& linear, cons
   for (std::size_t a = 0; a < linear.quantities.size(); ++a) {
     held.push_back(fmt::format("{} = {:g}", whole.structure().conserved[static_cast<std::size_t>(linear.quantities[a])],
                                chart.values(static_cast<Index>(a))));
-    frame.push_back(names[static_cast<std::size_t>(linear.frame[a])]);
     redundant.push_back(names[static_cast<std::size_t>(linear.redundant[a])]);
   }
+  for (const int left_out : linear.frame) frame.push_back(names[static_cast<std::size_t>(left_out)]);
   info.meaning += fmt::format("; held: {}, from which {} follow{}", fmt::join(held, ", "), fmt::join(redundant, ", "),
                               redundant.size() == 1 ? "s" : "");
+  if (frame.empty() && told.empty()) return info;
+  if (frame.empty()) frame = redundant;
   info.meaning += told.empty() ? fmt::format("; {} left out", fmt::join(frame, ", "))
                                : fmt::format("; {} left out: {}", fmt::join(frame, ", "), fmt::join(told, ", "));
   return info;

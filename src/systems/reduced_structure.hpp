@@ -29,7 +29,7 @@ struct Chart {
   std::vector<std::size_t> kept;  ///< the whole system's coordinates, told from the frame, are x_c = z_kept[c]
   std::optional<Straightening> straightening;  ///< y = S x; y = x without it
   std::vector<int> others;                     ///< the conserved quantities that are left
-  Eigen::VectorXd values;                      ///< of the linear quantities, held
+  Eigen::VectorXd values;                      ///< of the linear quantities (k), held
   Eigen::VectorXd constants;                   ///< theirs at z = 0
   Eigen::MatrixXd gradients;                   ///< theirs, d x k
   Eigen::MatrixXd from_values;                 ///< of the redundant coordinates by the values, k x k

@@ -16,6 +16,7 @@
 #include "orbweaver/systems/quad_system.hpp"
 #include "reduced_formulas.hpp"
 #include "reduced_structure.hpp"
+#include "with_totals.hpp"
 
 namespace orbweaver::systems {
 
@@ -256,9 +257,62 @@ const ReducedSystem& as_reduced(const System& system) {
   return *found;
 }
 
+/// Coordinates that follow from the others and the totals: those of the largest terms at `place`, since one that is
+/// small beside others would be the difference of large ones. Elimination with complete pivoting.
+std::vector<int> redundant_at(const std::vector<LinearTotal>& totals, const VectorXd& place) {
+  const auto k = static_cast<Index>(totals.size());
+  const double largest = place.cwiseAbs().maxCoeff();
+  const VectorXd sizes = largest > 0.0
+                             ? VectorXd(place.cwiseAbs().cwiseMax(std::numeric_limits<double>::epsilon() * largest))
+                             : VectorXd(VectorXd::Ones(place.size()));
+  MatrixXd terms(k, place.size());
+  for (Index a = 0; a < k; ++a) {
+    terms.row(a) = totals[static_cast<std::size_t>(a)].weights.cwiseProduct(sizes);
+    terms.row(a) /= terms.row(a).cwiseAbs().maxCoeff();
+  }
+  std::vector<int> redundant;
+  for (Index a = 0; a < k; ++a) {
+    Index row = 0, column = 0;
+    terms.bottomRows(k - a).cwiseAbs().maxCoeff(&row, &column);
+    terms.row(a).swap(terms.row(a + row));
+    for (Index b = a + 1; b < k; ++b) terms.row(b) -= terms(b, column) / terms(a, column) * terms.row(a);
+    terms.bottomRows(k - a - 1).col(column).setZero();
+    redundant.push_back(static_cast<int>(column));
+  }
+  return redundant;
+}
+
 }  // namespace
 
+std::shared_ptr<const System> without_totals(std::shared_ptr<const System> system,
+                                             const std::vector<LinearTotal>& totals, const HeldTotals& held) {
+  const auto d = static_cast<std::size_t>(system->dimension());
+  LinearQuantities linear;
+  linear.place = held.place.size() == d ? held.place : std::vector<double>(d, 0.0);
+  const VectorXd place = Eigen::Map<const VectorXd>(linear.place.data(), static_cast<Index>(d));
+  std::map<std::string, double> values;
+  auto next = static_cast<int>(system->structure().conserved.size());
+  for (const LinearTotal& total : totals) {
+    linear.quantities.push_back(total.quantity >= 0 ? total.quantity : next++);
+    const auto given = held.values.find(total.name);
+    values[total.name] = given != held.values.end() ? given->second
+                         : total.quantity >= 0      ? system->conserved(total.quantity, linear.place)
+                                                    : total.weights.dot(place);
+  }
+  linear.motions = MatrixXd::Zero(static_cast<Index>(d), 0);
+  linear.redundant = redundant_at(totals, place);
+  const std::shared_ptr<const System> whole = with_totals(std::move(system), totals, values, held.moving);
+  std::optional<Straightening> straightening;
+  const Chart plain = chart_of(*whole, linear, {});
+  if (skewness(*whole, linear, plain) > 0.0) straightening = straightening_of(*whole, linear, plain);
+  return std::make_shared<const ReducedSystem>(whole, std::move(linear), straightening);
+}
+
 std::shared_ptr<const System> reduced(std::shared_ptr<const System> system) {
+  if (const std::vector<LinearTotal> totals = linear_totals(*system); !totals.empty()) {
+    const FamilyScalars moving = system->family_scalars();
+    return without_totals(std::move(system), totals, {.values = {}, .place = {}, .moving = moving});
+  }
   if (system->structure().conserved.size() < 2) return system;
   const LinearSearch search = find_linear_quantities(*system);
   if (!search.obstacle.empty()) return system;

@@ -149,6 +149,29 @@ std::vector<std::string> template_arguments(const std::string& type) {
   return arguments;
 }
 
+/// Of the model or of an effect asked for.
+bool has_parameter(const ModelInfo& info, const std::vector<std::string>& effects, const std::string& name) {
+  const auto holds = [&](const std::vector<Parameter>& parameters) {
+    return std::any_of(parameters.begin(), parameters.end(), [&](const Parameter& p) { return p.name == name; });
+  };
+  return holds(info.parameters) || std::any_of(info.effects.begin(), info.effects.end(), [&](const Effect& effect) {
+           return std::find(effects.begin(), effects.end(), effect.name) != effects.end() && holds(effect.parameters);
+         });
+}
+
+/// Numbers named after coordinates are a state.
+HeldTotals held_totals(const System& system, std::map<std::string, double> given, const FamilyScalars& moving) {
+  HeldTotals held;
+  held.moving = moving;
+  for (const std::string& coordinate : system.info().state_names)
+    if (const auto found = given.find(coordinate); found != given.end()) {
+      held.place.push_back(found->second);
+      given.erase(found);
+    }
+  held.values = std::move(given);
+  return held;
+}
+
 }  // namespace
 
 const std::vector<RegistryLine>& registry_lines() { return registry(); }
@@ -235,12 +258,31 @@ std::string type_with_effects(const std::string& name, const std::vector<std::st
 
 std::shared_ptr<const System> make_system(const std::string& name, const std::map<std::string, double>& parameters,
                                           const std::vector<std::string>& effects, const FamilyScalars& scalars) {
-  const Bound bound = bound_to(model_info(name), parameters, effects, scalars);
+  const ModelInfo& info = model_info(name);
+  const auto is_own = [&](const std::string& parameter) { return has_parameter(info, effects, parameter); };
+  std::map<std::string, double> own;
+  std::map<std::string, double> others;  // totals, or a state where they have their values
+  for (const auto& [parameter, value] : parameters) (is_own(parameter) ? own : others)[parameter] = value;
+  const bool moves_own = std::all_of(scalars.free.begin(), scalars.free.end(), is_own);
+  const Bound bound = bound_to(info, own, effects, moves_own ? scalars : FamilyScalars{});
   const std::set<std::string> asked(effects.begin(), effects.end());
   for (const RegistryLine& candidate : registry()) {
     if (candidate.info().name != name) continue;
     const std::vector<std::string>& has = candidate.effects();
-    if (std::set(has.begin(), has.end()) == asked) return reduced(made(candidate, bound));
+    if (std::set(has.begin(), has.end()) != asked) continue;
+    std::shared_ptr<const System> system = made(candidate, bound);
+    const std::vector<LinearTotal> totals = linear_totals(*system);
+    const HeldTotals held = held_totals(*system, others, scalars);
+    const auto is_total = [&](const std::string& parameter) {
+      return std::any_of(totals.begin(), totals.end(), [&](const auto& total) { return total.name == parameter; });
+    };
+    const auto is_known = [&](const std::string& parameter) { return is_own(parameter) || is_total(parameter); };
+    const bool are_known =
+        std::all_of(held.values.begin(), held.values.end(), [&](const auto& of) { return is_known(of.first); }) &&
+        std::all_of(scalars.free.begin(), scalars.free.end(), is_known);
+    if (!are_known || (totals.empty() && !others.empty()))
+      static_cast<void>(bound_to(info, parameters, effects, scalars));  // says which are not
+    return totals.empty() ? reduced(std::move(system)) : without_totals(std::move(system), totals, held);
   }
   refuse_combination(name, effects);
 }

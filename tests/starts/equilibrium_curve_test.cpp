@@ -373,6 +373,91 @@ TEST(EquilibriumCurve, TwoHopfPointsWithinOneStepAreFound) {
     }
 }
 
+/// u' = e (m u - v) + w - u, v' = e (u + m v), w' = K (u - w): with w = K u/(K + l) the characteristic equation is
+/// (l (1 + 1/(K + l)) - e m) (l - e m) + e^2 = 0, a Hopf point at m = 0 with the period 2 pi/e to 1/K, beside -K.
+class BesideAFastDecay {
+ public:
+  static constexpr int dimension = 3;
+  static constexpr int quantities = 0;
+  static systems::ModelInfo info() {
+    return test::described("beside_a_fast_decay", "a slow oscillation beside a fast decay", {"u", "v", "w"}, {"m"},
+                           0.0);
+  }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound) : _m(bound["m"]) {}
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = (z[0] * _m - z[1]) * 1e-3 + (z[2] - z[0]);
+      f[1] = (z[0] + z[1] * _m) * 1e-3;
+      f[2] = (z[0] - z[2]) * 1e12;
+    }
+
+   private:
+    P _m;
+  };
+};
+
+TEST(EquilibriumCurve, HasAHopfPointBesideAFastDecay) {
+  for (const double start : {-0.37, -0.43, 0.05}) {
+    systems::Bound bound = systems::bound_to(BesideAFastDecay::info(), {{"m", start}}, {});
+    bound.scalars.free = {"m"};
+    const EquilibriumCurve curve =
+        follow_equilibrium(*systems::Registered<BesideAFastDecay>::make(bound), std::vector<double>(3, 0.0),
+                           {.parameter_from = -1.0, .parameter_to = 1.0});
+    ASSERT_EQ(curve.hopf.size(), 1U) << start;
+    EXPECT_NEAR(curve.hopf[0].at.parameter, 0.0, 1e-9);
+    EXPECT_NEAR(curve.hopf[0].period, 2e3 * std::numbers::pi, 1e-6);
+    EXPECT_THAT(branch_points(curve), ::testing::IsEmpty());
+    for (const EquilibriumPoint& point : curve.points) EXPECT_FALSE(point.may_branch_before || point.may_pass_before);
+  }
+}
+
+/// Lotka and Volterra's equations: x' = x (a - y), y' = y (x - 1), a centre at (1, a) for all a.
+class LotkaVolterra {
+ public:
+  static constexpr int dimension = 2;
+  static constexpr int quantities = 0;
+  static systems::ModelInfo info() { return test::described("lotka", "hares and lynxes", {"x", "y"}, {"a"}); }
+  static systems::Structure structure(const systems::Bound&) { return test::dissipative_structure(dimension); }
+  template <class P>
+  class With {
+   public:
+    explicit With(const systems::BoundTo<P>& bound) : _a(bound["a"]) {}
+    template <class S>
+    void field(const S* z, S* f) const {
+      f[0] = z[0] * (_a - z[1]);
+      f[1] = z[1] * (z[0] - 1.0);
+    }
+
+   private:
+    P _a;
+  };
+};
+
+TEST(EquilibriumCurve, OfCentresHasNoHopfPoint) {
+  systems::Bound bound = systems::bound_to(LotkaVolterra::info(), {}, {});
+  bound.scalars.free = {"a"};
+  const auto system = systems::Registered<LotkaVolterra>::make(bound);
+  const EquilibriumCurve curve =
+      follow_equilibrium(*system, std::vector<double>{1.0, 1.0}, {.parameter_from = 0.5, .parameter_to = 2.0});
+  EXPECT_THAT(curve.hopf, ::testing::IsEmpty());
+  EXPECT_TRUE(std::isfinite(curve.stays));
+  EXPECT_TRUE(std::isnan(follow_equilibrium(test::LorenzEquations(20.0), std::vector<double>(3, 0.0),
+                                            {.parameter_from = 0.0, .parameter_to = 25.0})
+                             .stays));
+  // Left for its length it says so; far out steps are longer, and its length is none.
+  const EquilibriumCurve cut = follow_equilibrium(*system, std::vector<double>{1.0, 1.0},
+                                                  {.parameter_from = 0.5, .parameter_to = 2.0, .most_points = 3});
+  EXPECT_THAT(cut.are_cut, ::testing::ElementsAre(true, true));
+  const EquilibriumCurve far =
+      follow_equilibrium(*system, std::vector<double>{1.0, 1.0}, {.parameter_from = 0.5, .parameter_to = 1e5});
+  EXPECT_THAT(far.are_cut, ::testing::ElementsAre(false, false));
+  EXPECT_LT(far.points.size(), 2000U);
+}
+
 TEST(EquilibriumCurve, NeedsAParameterThatMovesAndAnEquilibrium) {
   EXPECT_THROW(static_cast<void>(follow_equilibrium(test::VanDerPol(0.5), std::vector<double>{0.0, 0.0})),
                core::MisuseError);

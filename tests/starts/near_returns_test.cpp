@@ -1,12 +1,16 @@
 #include "orbweaver/starts/near_returns.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numbers>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "orbweaver/systems/scaled_system.hpp"
 
 namespace orbweaver::starts::near_returns_test {
 namespace {
@@ -58,6 +62,29 @@ TEST(NearReturns, AreMinimaOfTheDistanceModuloWholeTurns) {
       known = known || (at.begin == near.begin && distance(at.state, near.state) == 0.0);
     EXPECT_TRUE(known);
   }
+}
+
+// Its shortest orbit, that of the words LR and RL, has T = 1.5586522107 (Viswanath 2003,
+// doi:10.1088/0951-7715/16/3/314); in units of 1 the trajectory comes nowhere within 0.1 of it.
+TEST(NearReturns, InItsOwnScalesLorenzsTrajectoryPassesTheShortestOrbit) {
+  const std::shared_ptr<const systems::System> system = systems::make_system("lorenz");
+  const std::vector<double> state{-13.7, -19.6, 27.0};
+  const NearReturnOptions options{100.0, 1.5, 1.62, 0.1};
+  const systems::Scales scales = trajectory_scales(*system, state, options);
+  EXPECT_THAT(scales.coordinates, ::testing::ElementsAre(8.0, 8.0, 8.0));
+  EXPECT_LT(scales.time, 1.0);
+  const auto scaled = systems::scaled(system, scales);
+  std::vector<double> told = state;
+  for (std::size_t i = 0; i < told.size(); ++i) told[i] /= scales.coordinate(i);
+  const auto closest = [](const std::vector<NearReturn>& found, double time) {
+    double gap = std::numeric_limits<double>::infinity();
+    for (const NearReturn& at : found) gap = std::min(gap, std::abs(at.time * at.order * time - 1.5586522107));
+    return gap;
+  };
+  const double in = scales.time;
+  const auto found = near_returns(*scaled, told, {100.0 / in, 1.5 / in, 1.62 / in, 0.1});
+  EXPECT_LT(closest(found, in), 0.03);
+  EXPECT_GT(found.size(), near_returns(*system, state, options).size());
 }
 
 TEST(NearReturns, AreRefusedWhereTheyTakeTooLong) {

@@ -34,6 +34,7 @@ struct EquilibriumPoint {
   EquilibriumKind kind = EquilibriumKind::regular;
   double period = 0.0;             ///< of the small oscillations at a Hopf point
   bool may_branch_before = false;  ///< whether other curves pass through the step to this point is not told
+  bool may_pass_before = false;    ///< nor whether a pair of eigenvalues passes the imaginary axis on it
 };
 
 /// Where a pair of eigenvalues passes the imaginary axis: a family of periodic orbits begins.
@@ -52,12 +53,15 @@ struct EquilibriumCurve {
   std::vector<Equilibrium> folds;        ///< where the parameter turns
   std::vector<HopfPoint> hopf;           ///< by the place on the curve
   std::vector<std::string> ends;         ///< why it ends at its first and at its last point
+  std::vector<bool> are_cut;             ///< whether it is left there for its length, and goes on
+  /// Period of a pair that is on the imaginary axis, to rounding, all along a step: a centre. NaN without one.
+  double stays = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct EquilibriumCurveOptions {
   double parameter_from = -std::numeric_limits<double>::infinity();
   double parameter_to = std::numeric_limits<double>::infinity();
-  double largest_step = 0.1;    ///< of the state and the parameter, in scales
+  double largest_step = 0.1;    ///< of the state and the parameter, in scales; far out a hundredth of their length
   double smallest_step = 1e-8;  ///< below it the curve ends
   int most_points = 5000;       ///< to either side
   double largest_state = 1e6;   ///< a state further from the start has left for infinity

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "orbweaver/systems/scales.hpp"
 #include "orbweaver/systems/system.hpp"
 
 namespace orbweaver::starts {
@@ -33,6 +34,13 @@ struct NearReturn {
 /// than `most_pairs` pairs of samples; MisuseError for a system without formulas.
 [[nodiscard]] std::vector<NearReturn> near_returns(const systems::System& system, const std::vector<double>& state,
                                                    const NearReturnOptions& options);
+
+/// The scales, powers of two, of the trajectory through `state`, in the system's units: a coordinate's is how far it
+/// strays from its mean, rms, and the time's how long it takes for that. Coordinates that do not move, and angles, have
+/// 1; those that a symmetry mixes have one. Where equilibria say nothing of a system's scales, this does. Throws as
+/// `near_returns`.
+[[nodiscard]] systems::Scales trajectory_scales(const systems::System& system, const std::vector<double>& state,
+                                                const NearReturnOptions& options);
 
 /// Pairs of samples that are compared: some minutes.
 inline constexpr double most_pairs = 2e10;

@@ -9,6 +9,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
+#include "orbweaver/starts/near_returns.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 
@@ -65,6 +66,11 @@ std::shared_ptr<const systems::System> in_own_scales(const scene::Scene& scene,
   require_one_quantity(*system);
   require_families(*system);
   systems::Scales natural = starts::natural_scales(*system, scene.fixed_points.grid);
+  if (natural.coordinates.empty() && scene.recurrences) {
+    const scene::Recurrences& given = *scene.recurrences;
+    natural = starts::trajectory_scales(*system, given.state,
+                                        {given.time, given.period_from, given.period_to, given.tolerance});
+  }
   for (const std::string& name : system->family_scalars().free)
     natural.parameters.push_back(scale_of_parameter(system->parameters().at(name), scene.limits));
   return systems::scaled(system, scene::scales_of(scene, *system, natural));

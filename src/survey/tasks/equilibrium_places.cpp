@@ -110,6 +110,11 @@ double distance(const starts::Equilibrium& a, const starts::Equilibrium& b) {
 
 }  // namespace
 
+bool is_undecided(const std::vector<EquilibriumPlace>& places) {
+  return std::any_of(places.begin(), places.end(),
+                     [](const EquilibriumPlace& place) { return place.note.starts_with(undecided_note); });
+}
+
 EquilibriumPlace equilibrium_place(const systems::System& system, const std::vector<double>& point, LinearModes modes) {
   const systems::Structure& structure = system.structure();
   EquilibriumPlace place;
@@ -145,15 +150,22 @@ std::vector<EquilibriumPlace> places_on(const systems::System& system, const sta
     place.step = static_cast<int>(places.size() - 1) - static_cast<int>(curve.start);
     place.kind = point.kind;
     place.parameter = point.at.parameter;
-    if (point.may_branch_before) place.note = may_branch_before;
+    if (point.may_branch_before)
+      place.note = fmt::format("{}other equilibria may branch off on the step to here", undecided_note);
+    if (point.may_pass_before)
+      place.note = (place.note.empty() ? std::string(undecided_note) : place.note + "; ") +
+                   "eigenvalues may pass the imaginary axis on the step to here";
   }
   for (std::size_t n = curve.start + 1; n < places.size(); ++n)
     places[n].arclength = places[n - 1].arclength + distance(curve.points[n - 1].at, curve.points[n].at);
   for (std::size_t n = curve.start; n-- > 0;)
     places[n].arclength = places[n + 1].arclength - distance(curve.points[n].at, curve.points[n + 1].at);
-  places.front().note = curve.ends.front();
+  const auto end = [&](std::size_t n) {
+    return curve.are_cut[n] ? fmt::format("{}what lies beyond {}", undecided_note, curve.ends[n]) : curve.ends[n];
+  };
+  places.front().note = end(0);
   std::string& last = places.back().note;
-  last = last.empty() ? curve.ends.back() : fmt::format("{}; {}", last, curve.ends.back());
+  last = last.empty() ? end(1) : fmt::format("{}; {}", last, end(1));
   return places;
 }
 

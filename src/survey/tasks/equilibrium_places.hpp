@@ -10,8 +10,11 @@
 
 namespace orbweaver::survey {
 
-/// How the note of a point begins where what branches off on the step to it is not told.
-inline constexpr std::string_view may_branch_before = "undecided: other equilibria may branch off on the step to here";
+/// How the note of a point begins where something is not told.
+inline constexpr std::string_view undecided_note = "undecided: ";
+
+/// Whether one of a curve's points has such a note.
+[[nodiscard]] bool is_undecided(const std::vector<EquilibriumPlace>& places);
 
 /// The equilibrium with the system's own parameters. Of a driven system all coordinates but the phase rest, and the
 /// phase's eigenvalue, 0, says nothing of its stability.

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "equilibrium_places.hpp"
 #include "given_start.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
@@ -28,6 +30,14 @@ SweepOutcome hopf_starts(const scene::Scene& scene, const systems::System& syste
   options.parameter_to = scene.limits.parameter_to;
   const starts::EquilibriumCurve curve = starts::follow_equilibrium(system, work.point, options);
   outcome.equilibria = places_on(system, curve);
+  if (!std::isnan(curve.stays))
+    outcome.without_family.push_back(fmt::format(
+        "a pair of eigenvalues, of the period {:.9g}, stays on the imaginary axis along the curve of equilibria, which "
+        "is no Hopf point: the equilibrium is a centre at all values of {}, and its orbits are no isolated ones; if "
+        "the "
+        "system conserves a quantity, name it in structure.conserved, if it is reversible, name its reversors (and no "
+        "`dissipative`), and leave out continuation.free",
+        curve.stays * system.scales().time, system.family_scalars().free.front()));
   std::vector<starts::HopfPoint> points = curve.hopf;
   std::stable_sort(points.begin(), points.end(),
                    [](const starts::HopfPoint& a, const starts::HopfPoint& b) { return a.distance < b.distance; });

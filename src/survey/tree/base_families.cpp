@@ -21,6 +21,7 @@
 #include "orbweaver/survey/tree/naming.hpp"
 #include "orbweaver/survey/tree/undeclared.hpp"
 #include "orbweaver/systems/identities.hpp"
+#include "tasks/equilibrium_places.hpp"
 #include "tasks/payload/keys.hpp"
 #include "tasks/payload/work.hpp"
 
@@ -109,8 +110,15 @@ void remark_undeclared(const systems::System& system, const Undeclared& undeclar
 }
 
 /// What to do where a survey has found no family at all.
-std::string nothing_found_advice(const systems::System& system, bool left_out) {
-  if (left_out) return "all their periods lie outside starts.sweep.period: make it wider, or `auto`";
+std::string nothing_found_advice(const systems::System& system, const std::vector<SweepOutcome>& sweeps) {
+  const auto any = [&](const auto& has) { return std::any_of(sweeps.begin(), sweeps.end(), has); };
+  if (any([](const SweepOutcome& found) { return !found.left_out.empty(); }))
+    return "all their periods lie outside starts.sweep.period: make it wider, or `auto`";
+  if (!system.family_scalars().free.empty() &&
+      any([](const SweepOutcome& found) { return !found.without_family.empty(); }))
+    return "equilibria on the curves are centres, and no Hopf points: the notes say what to do";
+  if (any([](const SweepOutcome& found) { return is_undecided(found.equilibria); }))
+    return "whether the curves of equilibria have a Hopf point is not told everywhere: the findings say where and why";
   if (!system.family_scalars().free.empty())
     return "no curve of equilibria has a Hopf point within limits.parameter: widen it, or give an orbit with "
            "starts.states";
@@ -316,7 +324,8 @@ BaseFamilies base_families(const scene::Scene& scene, const systems::System& sys
   remark_undeclared(system, undeclared(system, equilibria_of_grid, states), summary);
   for (const SweepOutcome& found : all) {
     check_names(scene, system, found);
-    const bool found_nothing = found.modes.empty() && found.rejected.empty() && found.without_family.empty();
+    const bool found_nothing = found.modes.empty() && found.rejected.empty() && found.without_family.empty() &&
+                               !is_undecided(found.equilibria);
     if (found_nothing && !system.family_scalars().free.empty()) {
       summary.remarks.push_back(
           fmt::format("no Hopf point on the curve of equilibria through {}", point_text(system, found.point)));
@@ -370,11 +379,11 @@ void require_families(const systems::System& system, const SweepsEnded& sweeps, 
         "ones, "
         "and go on with --resume");
   if (!summary.families.empty()) return;
-  bool left_out = false;
+  std::vector<SweepOutcome> ended_well;
   for (const auto& [key, ended] : sweeps)
-    left_out = left_out || (!ended.second.failed && !unpack_sweep_outcome(ended.second.payload).left_out.empty());
+    if (!ended.second.failed) ended_well.push_back(unpack_sweep_outcome(ended.second.payload));
   summary.failed_tasks.push_back(
-      fmt::format("no family found, and the archive is empty: {}", nothing_found_advice(system, left_out)));
+      fmt::format("no family found, and the archive is empty: {}", nothing_found_advice(system, ended_well)));
 }
 
 void gather_failed_sweeps(const systems::System& system, const SweepsEnded& sweeps, Summary& summary,

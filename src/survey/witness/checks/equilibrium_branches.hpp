@@ -17,8 +17,8 @@
 namespace orbweaver::survey {
 
 /// Where another curve of equilibria passes through one that was followed, some other curve of the archive must have
-/// the same point: else its equilibria, and the families that begin at them, are missing. Where that is not told the
-/// curve's note says so.
+/// the same point: else its equilibria, and the families that begin at them, are missing. Where that is not told, or
+/// whether eigenvalues pass the axis, or the curve is left for its length, its note says so.
 class EquilibriumBranches final : public Check {
  public:
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
@@ -26,9 +26,10 @@ class EquilibriumBranches final : public Check {
     std::vector<Finding> found;
     const archive::Table& table = evidence.tree.atlas.equilibria();
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      if (table.texts("note")[row].starts_with(may_branch_before)) {
+      const std::string& note = table.texts("note")[row];
+      if (note.starts_with(undecided_note)) {
         Finding finding = finding_at(evidence, table, row, FindingKind::undecided_event);
-        finding.detail += ": rounding hides whether other equilibria branch off on the curve's step to there";
+        finding.detail += ": not told on the curve of equilibria: " + note.substr(undecided_note.size());
         found.push_back(std::move(finding));
       }
       if (table.texts("kind")[row] == "branch-point" && !is_shared(evidence, table, row))
