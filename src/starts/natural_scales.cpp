@@ -26,8 +26,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Of the largest entry of a balanced matrix, or an eigenvalue's size: what is smaller is rounding, or the square root of it at a
-/// Jordan block, and couples or scales nothing.
+/// Of the largest entry of a balanced matrix, or an eigenvalue's size: what is smaller is rounding, or the square root
+/// of it at a Jordan block, and couples or scales nothing.
 constexpr double rounding_entry = 1e-10;
 constexpr double negligible_eigenvalue = 1e-7;
 /// Sweeps of the balancing: it converges within some ten, unless nothing couples one way, where no scale is best.
