@@ -24,11 +24,11 @@ using numerics::QuadMatrix;
 /// Of the largest modulus, for each dimension: rounding of the QR iteration in double precision.
 constexpr double qr_rounding = std::numeric_limits<double>::epsilon();
 /// Of an eigenvalue: what rounding of its own may be, which real parts at the ends of curves are held against.
-constexpr double known_to = 1e-12;
+constexpr double known_eigenvalue = 1e-12;
 
 bool is_graded(const Eigen::VectorXcd& values) {
   const VectorXd moduli = values.cwiseAbs();
-  return static_cast<double>(moduli.size()) * qr_rounding * moduli.maxCoeff() > known_to * moduli.minCoeff();
+  return static_cast<double>(moduli.size()) * qr_rounding * moduli.maxCoeff() > known_eigenvalue * moduli.minCoeff();
 }
 
 std::optional<GradedSpectrum> in_quadruple_precision(const MatrixXd& matrix, bool with_vectors) {

@@ -135,7 +135,7 @@ HopfPoints hopf_between(const CurveEquations& curve, const CurveNode& a, const C
   const std::vector<Complex> to = oscillating(at_b.values);
   HopfPoints out;
   // Of one that is zero all along it is not told what it does.
-  out.is_undecided = has_zero(at_a) && has_zero(at_b);
+  out.is_undecided = has_zero(at_a) && has_zero(at_b) && !are_one_place(a.x, b.x);
   std::vector<LocatedHopf>& found = out.found;
   const VectorXd chord = b.x - a.x;
   const auto in_halves = [&]() -> std::optional<HopfPoints> {
@@ -203,7 +203,7 @@ HopfPoints hopf_between(const CurveEquations& curve, const CurveNode& a, const C
                                         [](Complex x, Complex y) { return std::abs(x.real()) < std::abs(y.real()); });
     return least == here.end() ? Complex{} : *least;
   };
-  if (found.size() % 2 == 0 && (product(a.x) >= 0.0) != (product(b.x) >= 0.0))
+  if (std::isnan(out.stays) && found.size() % 2 == 0 && (product(a.x) >= 0.0) != (product(b.x) >= 0.0))
     add(zero_between(curve, a, b, product), on_axis);
   return out;
 }
