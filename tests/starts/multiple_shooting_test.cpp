@@ -1,5 +1,5 @@
-// A published orbit of three equal bodies that pass at a hundredth of their distance: its guess is resolved, and brought
-// nearer where its digits are few.
+// A published orbit of three equal bodies that pass at a hundredth of their distance: its guess is resolved, and
+// brought nearer where its digits are few.
 #include "orbweaver/starts/multiple_shooting.hpp"
 
 #include <cmath>

@@ -15,9 +15,10 @@ struct Integrator {
   Advance transition;
 };
 
-/// A curve brought nearer to an orbit of its period (of any, where nothing is conserved and nothing drives) by multiple shooting: damped steps of Newton's method on states
-/// along it, between which the motion turns alike, however fast it is. `missed`: what the pieces between these states
-/// miss the next ones by, together; where Newton's method finds no orbit it stays above the integrator's error.
+/// A curve brought nearer to an orbit of its period (of any, where nothing is conserved and nothing drives) by multiple
+/// shooting: damped steps of Newton's method on states along it, between which the motion turns alike, however fast it
+/// is. `missed`: what the pieces between these states miss the next ones by, together; where Newton's method finds no
+/// orbit it stays above the integrator's error.
 struct ShotCurve {
   GuessCurve curve;
   double missed = 0.0;
