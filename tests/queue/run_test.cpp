@@ -120,7 +120,9 @@ TEST(Run, WhatATaskThrowsIsKeptAsItCanBeShown) {
   queue::Observer nobody;
   const auto summary = queue::run(comm, {}, tasks(1), work, nobody, flush);
   ASSERT_EQ(summary.failed, 1u);
-  if (comm.is_root()) EXPECT_EQ(summary.failures[0].reason, "Kr\\xf6mmung");
+  if (comm.is_root()) {
+    EXPECT_EQ(summary.failures[0].reason, "Kr\\xf6mmung");
+  }
 }
 
 TEST(Run, OutcomesAreThoseOfTheReferenceWhateverTheNumberOfRanks) {
