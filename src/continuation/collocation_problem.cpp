@@ -248,7 +248,9 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
   try {
     auto result = _solver.solve(e, trial.values, !state().factor_point.empty(), solver_options());
     if (!result.converged && _options.base_is_far) {
-      result = solved_from_afar(e, trial.values = predicted);
+      trial.values = predicted;
+      equations::approach(e, trial.values, e.period_at(), bounded_amplitude());
+      result = _solver.solve(e, trial.values, false, solver_options());
     }
     trial.iterations = result.iterations;
     trial.prediction_error = result.first_change;
@@ -286,26 +288,6 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
     trial.under_resolved = true;  // once the cells resolve the fast motion they precondition it
   }
   return trial;
-}
-
-/// By damped steps of Newton's method, whose linear systems are solved as they are: beside a close passage the boxes'
-/// error is magnified by all that follows. So is the branch from here on where the boxes do not do near the orbit
-/// either.
-equations::AndersonSolver::Result CollocationProblem::solved_from_afar(Collocation& e, std::vector<double>& values) {
-  e.precondition_by(Preconditioner::krylov);
-  equations::approach(e, values, e.period_at(), bounded_amplitude());
-  e.precondition_by(preconditioner_of(e));
-  const std::vector<double> near = values;
-  auto result = _solver.solve(e, values, false, solver_options());
-  if (result.converged || state().preconditioner != Preconditioner::box) return result;
-  values = near;
-  e.precondition_by(Preconditioner::krylov);
-  result = _solver.solve(e, values, false, solver_options());
-  if (result.converged)
-    state().preconditioner = Preconditioner::krylov;
-  else
-    e.precondition_by(preconditioner_of(e));
-  return result;
 }
 
 /// Whether the box scheme's error may be all that is seen along some direction of an orbit where the solver came to

@@ -58,8 +58,6 @@ class CollocationProblem final : public PointProblem {
   [[nodiscard]] equations::AndersonSolver::Options solver_options();
   [[nodiscard]] double bounded_amplitude();
   [[nodiscard]] double rounding_of_nodes();
-  [[nodiscard]] equations::AndersonSolver::Result solved_from_afar(equations::Collocation& e,
-                                                                   std::vector<double>& values);
   [[nodiscard]] bool may_be_sharper(Trial& trial);
   [[nodiscard]] std::optional<Trial> solved_anew(const equations::AndersonSolver::Options& options,
                                                  const std::vector<double>& conditions, Trial trial);

@@ -100,17 +100,11 @@ loop::Loop loop_through(const systems::Structure& structure, const GuessCurve& c
   Sampled out = sampled(structure, curve, {}, samples_of_guess);
   if (out.is_resolved()) return out.shortened();
   const loop::TimeMap map = map_to_motion(curve);
-  double DBGs = 0;
-  for (std::size_t q = 1; q < curve.times.size(); ++q)
-    DBGs += 0.5 * (curve.rates[q] + curve.rates[q - 1]) * (curve.times[q] - curve.times[q - 1]);
-
   int count = loop::FourierGrid::nodes_at_least(std::max(samples_of_guess, static_cast<int>(curve.times.size())));
   do {
     out = sampled(structure, curve, map, count);
     count = loop::FourierGrid::nodes_at_least(2 * count);
   } while (!out.is_resolved() && count <= static_cast<int>(most_nodes));
-  fprintf(stderr, "DBG mesh %zu S %g map %zu K %d -> %d left %g tail %g\n", curve.times.size(), DBGs,
-          map.coefficients.size() / 2, out.loop.cutoff, out.shortened().cutoff, out.left_out, loop::tail(out.loop));
   return out.shortened();
 }
 
