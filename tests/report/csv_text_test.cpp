@@ -20,7 +20,7 @@ TEST(CsvText, IsInQuotesWhereItWouldEndAField) {
 }
 
 TEST(CsvText, IsNoFormulaOfASpreadsheet) {
-  for (const std::string& text :
+  for (const std::string text :
        {"=1+1", "=cmd|' /C calc'!A0", "+1+1", "-1+1", "-x", "@SUM(1)", "\t=1+1", "\r=1+1", "=", "+"})
     EXPECT_EQ(csv_text(text), "\"'" + text + "\"");
   EXPECT_EQ(csv_text("=HYPERLINK(\"http://x\",1)"), "\"'=HYPERLINK(\"\"http://x\"\",1)\"");
