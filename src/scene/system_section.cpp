@@ -68,7 +68,8 @@ std::vector<systems::Parameter> known_parameters(const systems::ModelInfo& info,
     if (is_asked_for(choice, effect))
       for (const systems::Parameter& parameter : effect.parameters)
         if (!holds(known, parameter.name)) known.push_back(parameter);
-  for (const systems::Parameter& parameter : bound_system(choice)->info().parameters)  // totals
+  const std::shared_ptr<const systems::System> system = bound_system(choice);
+  for (const systems::Parameter& parameter : system->info().parameters)  // totals
     if (!holds(known, parameter.name)) known.push_back(parameter);
   return known;
 }

@@ -74,6 +74,7 @@ struct Looked {
   std::vector<Real> real;   ///< eigenvalues, the largest first
   int to_the_right = 0;     ///< eigenvalues of positive real part
   double least_pair = 0.0;  ///< modulus of the real part of pairs, the least
+  double largest = 0.0;     ///< size of eigenvalues
   int orientation = 0;      ///< the sign of the determinant of the bordered equation; 0 where rounding has it
   /// Of eigenvalues in that order: whether it is zero because another curve passes just here.
   [[nodiscard]] bool is_zero(std::size_t k) const { return orientation == 0 && real[k].may_be_zero(); }
@@ -100,6 +101,7 @@ double least_modulus(const std::vector<Real>& real) {
 Looked looked_at(const CurveEquations& curve, CurveNode node) {
   const GradedSpectrum spectrum = curve.eigensystem(node.x, false);
   Looked out;
+  out.largest = spectrum.sizes.maxCoeff();
   out.real = real_ones(spectrum);
   out.least_pair = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < spectrum.values.size(); ++i) {
@@ -207,24 +209,31 @@ class Search {
   }
 
   /// Unless an eigenvalue has another sign by a jump, or a pole. At the place itself all may be zero.
-  void add_if_singular(const std::optional<VectorXd>& place) {
-    const auto is_singular = [&](const GradedSpectrum& at) {
-      return (at.values.cwiseAbs().array() <= zero_eigenvalue * at.sizes.array()).any();
-    };
-    if (place && is_singular(_curve.eigensystem(*place, false)))
+  void add_if_singular(const std::optional<VectorXd>& place, const Looked& a, const Looked& b) {
+    if (place && _curve.eigenvalues(*place).cwiseAbs().minCoeff() <= zero_eigenvalue * size_between(a, b))
       add(*place);
     else
       _found.is_undecided = true;
   }
 
+  /// Of what passes zero, at the ends, since where it is zero it may have none; where no eigenvalue alone tells, of all.
+  [[nodiscard]] static double size_between(const Looked& a, const Looked& b) {
+    double size = 0.0;
+    if (a.real.size() == b.real.size())
+      for (const std::size_t k : passing_between(a, b)) size = std::max({size, a.real[k].size, b.real[k].size});
+    return size > 0.0 ? size : std::max(a.largest, b.largest);
+  }
+
   /// By the determinant, where no eigenvalue alone tells: the curve turns as well, or real ones meet.
   void add_one(const Looked& a, const Looked& b) {
     const double size = determinant_of(_curve.bordered(a.node.x, a.node.direction)).log;
-    add_if_singular(zero_beside_curve(_curve, a.node, b.node, [&](const VectorXd& at) {
-      constexpr double most = 700.0;  // a double's
-      const Determinant here = determinant_of(_curve.bordered(at, a.node.direction));
-      return here.sign * std::exp(std::clamp(here.log - size, -most, most));
-    }));
+    add_if_singular(zero_beside_curve(_curve, a.node, b.node,
+                                      [&](const VectorXd& at) {
+                                        constexpr double most = 700.0;  // a double's
+                                        const Determinant here = determinant_of(_curve.bordered(at, a.node.direction));
+                                        return here.sign * std::exp(std::clamp(here.log - size, -most, most));
+                                      }),
+                    a, b);
   }
 
   /// By their eigenvalues, within a piece so short that its cubic is the curve to rounding.
@@ -252,7 +261,7 @@ class Search {
       shares.erase(std::min_element(shares.begin(), shares.end(),
                                     [&](double x, double y) { return std::abs(x - at) < std::abs(y - at); }));
     }
-    for (const double share : shares) add_if_singular(cubic_between(a.node, b.node, share));
+    for (const double share : shares) add_if_singular(cubic_between(a.node, b.node, share), a, b);
   }
 
   const CurveEquations& _curve;
