@@ -21,9 +21,13 @@ std::shared_ptr<const systems::System> system_of(const archive::Header& header) 
   for (std::size_t i = 0; i < header.parameter_names.size(); ++i)
     parameters[header.parameter_names[i]] = header.parameter_values[i];
   const auto system = systems::make_system(header.system, parameters, header.effects);
-  if (system->info().state_names == header.state_names) return system;
+  const std::vector<std::string>& all = info_of(header)->state_names;
+  const bool has_some = std::all_of(header.state_names.begin(), header.state_names.end(), [&](const std::string& name) {
+    return std::find(all.begin(), all.end(), name) != all.end();
+  });
+  if (system->info().state_names == header.state_names || !has_some) return system;
   // Which coordinates follow from totals: those that the rows do not have.
-  for (const std::string& name : info_of(header)->state_names)
+  for (const std::string& name : all)
     parameters.insert({name, std::count(header.state_names.begin(), header.state_names.end(), name) == 0 ? 1.0 : 0.0});
   return systems::make_system(header.system, parameters, header.effects);
 }

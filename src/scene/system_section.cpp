@@ -68,6 +68,7 @@ std::vector<systems::Parameter> known_parameters(const systems::ModelInfo& info,
     if (is_asked_for(choice, effect))
       for (const systems::Parameter& parameter : effect.parameters)
         if (!holds(known, parameter.name)) known.push_back(parameter);
+  if (choice.name != info.name) return known;
   const std::shared_ptr<const systems::System> system = bound_system(choice);
   for (const systems::Parameter& parameter : system->info().parameters)  // totals
     if (!holds(known, parameter.name)) known.push_back(parameter);

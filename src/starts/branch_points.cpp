@@ -216,7 +216,8 @@ class Search {
       _found.is_undecided = true;
   }
 
-  /// Of what passes zero, at the ends, since where it is zero it may have none; where no eigenvalue alone tells, of all.
+  /// Of what passes zero, at the ends, since where it is zero it may have none; where no eigenvalue alone tells, of
+  /// all.
   [[nodiscard]] static double size_between(const Looked& a, const Looked& b) {
     double size = 0.0;
     if (a.real.size() == b.real.size())

@@ -64,7 +64,7 @@ std::optional<Eigen::VectorXd> newton(const systems::System& system, Eigen::Vect
   }
   system.field(1, z.data(), f.data());
   hold_phase(system, f, a);
-  if (!(f.norm() < vanishing_field * (1.0 + a.norm()))) return std::nullopt;
+  if (!(f.stableNorm() < vanishing_field * (1.0 + a.stableNorm()))) return std::nullopt;
   return z;
 }
 
@@ -79,7 +79,7 @@ bool rests_at_all_phases(const systems::System& system, Eigen::VectorXd z) {
     z(d - 1) = two_pi * n / phases;
     system.field_jacobian(1, z.data(), f.data(), a.data());
     hold_phase(system, f, a);
-    if (!(f.norm() < vanishing_field * (1.0 + a.norm()))) return false;
+    if (!(f.stableNorm() < vanishing_field * (1.0 + a.stableNorm()))) return false;
   }
   return true;
 }

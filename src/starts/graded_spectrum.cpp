@@ -1,9 +1,11 @@
 #include "graded_spectrum.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 
@@ -23,12 +25,24 @@ using numerics::QuadMatrix;
 
 /// Of the largest modulus, for each dimension: rounding of the QR iteration in double precision.
 constexpr double qr_rounding = std::numeric_limits<double>::epsilon();
-/// Of an eigenvalue: what rounding of its own may be, which real parts at the ends of curves are held against.
-constexpr double known_eigenvalue = 1e-12;
+/// Of an eigenvalue: what rounding of its own may be.
+constexpr double known_eigenvalue = 1e-9;
 
+/// The smallest real one does not count: it may be on its way through zero, as at a branch point, where its rounding is
+/// that of the others.
 bool is_graded(const Eigen::VectorXcd& values) {
-  const VectorXd moduli = values.cwiseAbs();
-  return static_cast<double>(moduli.size()) * qr_rounding * moduli.maxCoeff() > known_eigenvalue * moduli.minCoeff();
+  std::vector<double> moduli;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const std::complex<double>& value : values) {
+    const double modulus = std::abs(value);
+    if (value.imag() == 0.0 && modulus < smallest)
+      std::swap(smallest, moduli.emplace_back(modulus));
+    else
+      moduli.push_back(modulus);
+  }
+  const auto least = std::min_element(moduli.begin(), moduli.end());
+  return least != moduli.end() &&
+         static_cast<double>(values.size()) * qr_rounding * values.cwiseAbs().maxCoeff() > known_eigenvalue * *least;
 }
 
 std::optional<GradedSpectrum> in_quadruple_precision(const MatrixXd& matrix, bool with_vectors) {

@@ -91,7 +91,7 @@ class Pieces {
     return out;
   }
 
-  /// The step of Newton's method, without a part along the motion of the first state. Where something is conserved one
+  /// The step of Newton's method, without a part along the motion. Where something is conserved one
   /// of an orbit's equations follows from the others: they are solved as least squares.
   [[nodiscard]] VectorXd step(const VectorXd& missed) const {
     MatrixXd equations = MatrixXd::Zero(states() + 1, points.size());
@@ -103,7 +103,9 @@ class Pieces {
       if (_has_own_period)
         equations.block(_d * n, states(), _d, 1) = (_times[at(n + 1)] - _times[at(n)]) * slope(end(points, n));
     }
-    equations.row(states()).head(_d) = slope(begin(points, 0)).normalized().transpose();
+    VectorXd along(states());
+    for (Index n = 0; n < count(); ++n) along.segment(_d * n, _d) = slope(begin(points, n));
+    equations.row(states()).head(states()) = along.normalized().transpose();
     VectorXd right = VectorXd::Zero(states() + 1);
     right.head(states()) = -missed;
     return Eigen::ColPivHouseholderQR<MatrixXd>(equations).solve(right);

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <string>
 
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
@@ -42,8 +43,14 @@ class Limited {
   rlimit _before{};
 };
 
+/// The program has PETSc, and with it BLAS, which nothing here calls.
+class AddressSpace : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { ASSERT_NE(dlopen("libblas.so.3", RTLD_NOW | RTLD_GLOBAL), nullptr) << dlerror(); }
+};
+
 // In this order: what OpenBLAS has taken it keeps.
-TEST(AddressSpace, ABufferThatDoesNotFitIsRefusedWithTheNumberNeeded) {
+TEST_F(AddressSpace, ABufferThatDoesNotFitIsRefusedWithTheNumberNeeded) {
   const double before = addresses_now();
   for (const auto kind : {RLIMIT_AS, RLIMIT_DATA}) {
     const Limited limited(kind, kind == RLIMIT_AS ? before + 64.0 * mebibyte : 64.0 * mebibyte);
@@ -58,7 +65,7 @@ TEST(AddressSpace, ABufferThatDoesNotFitIsRefusedWithTheNumberNeeded) {
   EXPECT_LT(addresses_now(), before + 64.0 * mebibyte);
 }
 
-TEST(AddressSpace, TheBufferIsAsLargeAsItIsSaidToBe) {
+TEST_F(AddressSpace, TheBufferIsAsLargeAsItIsSaidToBe) {
   const double before = addresses_now();
   core::take_blas_buffer();
   const double taken = addresses_now() - before;
@@ -68,7 +75,7 @@ TEST(AddressSpace, TheBufferIsAsLargeAsItIsSaidToBe) {
   EXPECT_LT(addresses_now() - before, 129.0 * mebibyte) << "it is taken once";
 }
 
-TEST(AddressSpace, LimitsBelowWhatARankTakesAreRefused) {
+TEST_F(AddressSpace, LimitsBelowWhatARankTakesAreRefused) {
   EXPECT_NO_THROW(core::require_space_of_a_rank());
   const double least = core::space_of_a_rank().addresses;
   {

@@ -100,7 +100,7 @@ TEST_F(FlatCrossings, SayHowFarTheyMayLieFromTheirPlaces) {
     if (crossings.texts("kind")[row] == "branch-point" && std::abs(eps) < 0.01) {
       ++flat;
       EXPECT_LE(std::abs(eps), off) << row;
-      EXPECT_LE(off, 0.02) << row;
+      EXPECT_LE(off, 0.05) << row;  // the index's bound is 1e-7 at most, and it goes with the fifth power at most
     } else {
       EXPECT_LE(off, 1e-6) << row;
     }

@@ -49,8 +49,10 @@ class PlaceErrorCheck {
       return _claims.object("place_error", fmt::format("is {:.3g}; a length was expected", stored));
     const double reach = stored / std::abs(_curve.arclength_unit_at(position));
     const auto there = _curve.at(position, true);
-    const auto before = beside(position - resolved * reach);
-    const auto behind = beside(position + resolved * reach);
+    // Nearer than two computations of one orbit may be, in the survey's scales, nothing is asked.
+    const double told = std::max(resolved * reach, continuation::same_orbit_tolerance);
+    const auto before = beside(position - told);
+    const auto behind = beside(position + told);
     // Where no orbit is, or none that is known, nothing can be told.
     if (there && before && behind && _kind != CrossingKind::unknown)
       _claims.expect(
