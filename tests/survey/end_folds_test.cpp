@@ -76,7 +76,8 @@ TEST(EndFolds, FoldsBesideABirthAreFoundWhereverTheFirstOrbitIs) {
     SCOPED_TRACE(start);
     const scene::Scene scene =
         scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/swinging_spring.yaml",
-                    {"system.parameters.stiffness=4", "limits.energy=[-.inf, -0.85]", "continuation.start=" + start});
+                    {"starts.fixed_points.names={}", "starts.fixed_points.letters={}", "system.parameters.stiffness=4",
+                     "limits.energy=[-.inf, -0.85]", "continuation.start=" + start});
     const survey::Summary summary = test::run(comm, scene, "weak_birth");
     EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
     const test::Atlas atlas(summary.atlas);
@@ -138,8 +139,8 @@ survey::Summary far_even_well(const std::map<std::string, double>& parameters,
   all.insert(all.end(), overrides.begin(), overrides.end());
   const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", all);
   const auto folder = test::fresh_folder("far_even_well", comm.get());
-  const auto far = std::make_shared<const test::TranslatedSystem>(test::even_well(parameters),
-                                                                  Eigen::Vector4d::Constant(1e5));
+  const auto far =
+      std::make_shared<const test::TranslatedSystem>(test::even_well(parameters), Eigen::Vector4d::Constant(1e5));
   survey::Summary summary = survey::run_survey(comm, scene, far, folder, {});
   EXPECT_TRUE(summary.failed_tasks.empty()) << testing::PrintToString(summary.failed_tasks);
   return summary;
