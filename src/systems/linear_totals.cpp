@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,9 +25,10 @@ using numerics::Quad;
 using numerics::QuadMatrix;
 using numerics::QuadVector;
 
-/// Of equations and weights of the size 1: what is smaller is rounding's. Some digits less than either precision has.
+/// Of equations and weights of the size 1: what is smaller is rounding's, of the computation in double precision; in
+/// quadruple precision that of the model's constants, which are doubles (0.02 + 1 - 1.02 is 2e-17).
 constexpr double to_double_rounding = 1e-10;
-constexpr double to_quad_rounding = 1e-25;
+constexpr double to_quad_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// Of both signs, and positive as concentrations are.
 std::vector<std::vector<double>> states_of(const Structure& structure) {

@@ -48,14 +48,13 @@ INSTANTIATE_TEST_SUITE_P(Rows, ClosePassages,
                                          Row{"three", "2, 0, 0, 0, -0.92889047, -0.79211995", 14.8939113}),
                          [](const auto& row) { return row.param.name; });
 
-TEST(ClosePassagesThatLeadToNoOrbit, AreToldWhereTheyAreFastestAndWhatIsMissed) {
+TEST(ClosePassagesThatLeadToNoOrbit, AreToldWhereTheyAreFastest) {
   const core::Communicator comm;
   const survey::Summary summary =
       test::run(comm, scene::parse(scene_of("2, 0, 0.3, 0.2, -0.31, -0.7", 3.1), "far.yaml"), "far_close");
   ASSERT_EQ(summary.failed_tasks.size(), 1U);
   EXPECT_THAT(summary.failed_tasks.front(), HasSubstr("the motion is fastest at t = "));
   EXPECT_THAT(summary.failed_tasks.front(), HasSubstr("r12 = "));
-  EXPECT_THAT(summary.failed_tasks.front(), HasSubstr("multiple shooting leaves pieces of it open by "));
 }
 
 }  // namespace

@@ -21,7 +21,6 @@
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/starts/loop_guess.hpp"
-#include "orbweaver/starts/multiple_shooting.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "orbweaver/survey/tree/undeclared.hpp"
 
@@ -74,15 +73,6 @@ void close_by_symmetry(const systems::Structure& structure, const GivenStart& gi
   }
 }
 
-starts::Integrator integrator_of(const systems::System& system) {
-  return {[&system](const std::vector<double>& state, double time) {
-            return certificate::integrate(system, state, time, guess_tolerance);
-          },
-          [&system](const std::vector<double>& state, double time) {
-            return certificate::transitions(system, {state}, time, guess_tolerance).front();
-          }};
-}
-
 /// The part of a given start's trajectory that lies before its state.
 double time_before(const systems::System& system, const GivenStart& given) {
   return given.is_return() || system.structure().dissipative ? 0.0 : 0.5 * given.period;
@@ -94,7 +84,9 @@ double time_before(const systems::System& system, const GivenStart& given) {
 starts::GuessCurve trajectory_of(const systems::System& system, const std::vector<double>& point,
                                  const GivenStart& given) {
   const double before = time_before(system, given);
-  const starts::Advance advance = integrator_of(system).advance;
+  const starts::Advance advance = [&system](const std::vector<double>& state, double time) {
+    return certificate::integrate(system, state, time, guess_tolerance);
+  };
   const auto nodes_over = [&](double time) {
     return starts::trajectory_nodes(system, advance, point, time, given.period * given.order / loop::time_sample_count);
   };
@@ -108,31 +100,12 @@ starts::GuessCurve trajectory_of(const systems::System& system, const std::vecto
   return starts::curve_through(std::move(nodes));
 }
 
-/// The curve of a given start, and its longest step.
-struct Given {
-  starts::GuessCurve curve;
-  double longest = 0.0;
-};
-Given curve_of(const systems::System& system, const SweepWork& work) {
-  const GivenStart& given = work.given.front();
-  const double longest = given.period * given.order / loop::time_sample_count;
-  if (given.guess.modes.empty()) return {trajectory_of(system, work.point, given), longest};
-  const auto state = [guess = given.guess](double time) { return loop::state_at(guess, time); };
-  return {starts::curve_of(system, state, given.period, longest), longest};
-}
-
-/// The guess as a loop. Where times that are spaced evenly do not resolve it, it is brought nearer to an orbit by
-/// multiple shooting first: to the harmonics of a loop an error is magnified by all that follows a close passage.
+/// The guess as a loop.
 loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
   const bool is_trajectory = given.guess.modes.empty();
   loop::Loop guess =
       is_trajectory ? starts::loop_through(system.structure(), trajectory_of(system, work.point, given)) : given.guess;
-  if (given.from != GivenStart::From::archive && !guess.time_map.is_identity()) {
-    const Given from = curve_of(system, work);
-    guess = starts::loop_through(system.structure(),
-                                 starts::shot_through(system, integrator_of(system), from.curve, from.longest).curve);
-  }
   guess.parameters.clear();
   for (const std::string& name : system.family_scalars().free)
     guess.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
@@ -311,12 +284,17 @@ std::string advice_for_closed(const systems::System& system, const std::vector<d
       directions, directions == 1 ? "" : "s");
 }
 
-/// Where along its guess the motion is fastest, and what is not reached where, as a text.
+/// Where along its guess the motion is fastest, as a text: there a correction is decided.
 std::string fastest_text(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
   const double unit = system.scales().time;
   try {
-    const auto [curve, longest] = curve_of(system, work);
+    const loop::Loop& guess = given.guess;
+    const starts::GuessCurve curve = guess.modes.empty()
+                                         ? trajectory_of(system, work.point, given)
+                                         : starts::curve_of(
+                                               system, [&](double time) { return loop::state_at(guess, time); },
+                                               given.period, given.period * given.order / loop::time_sample_count);
     const starts::GuessCurve::Fastest fastest = curve.fastest();
     const double begin = given.guess.modes.empty() ? time_before(system, given) : 0.0;
     std::string text = fmt::format(
@@ -326,9 +304,7 @@ std::string fastest_text(const systems::System& system, const SweepWork& work) {
     for (std::size_t k = 0; k < guards.size(); ++k)
       text += fmt::format("{}{} = {:.3g}", k == 0 ? " with " : ", ", guards[k].name,
                           system.guard(static_cast<int>(k), curve.state(fastest.time)));
-    const starts::ShotCurve shot = starts::shot_through(system, integrator_of(system), curve, longest);
-    return text + fmt::format("; multiple shooting leaves pieces of it open by {:.2g}, most at t = {:.6g}", shot.missed,
-                              (shot.missed_at - begin) * unit);
+    return text;
   } catch (const core::NumericalError& error) {
     return fmt::format("; its guess: {}", error.what());
   }
