@@ -216,8 +216,6 @@ void require_description(const ModelInfo& info) {
   require_parameters(info.parameters);
   std::vector<std::string> parameters;
   for (const Parameter& parameter : info.parameters) parameters.push_back(parameter.name);
-  for (const Effect& effect : info.effects)
-    for (const Parameter& parameter : effect.parameters) parameters.push_back(parameter.name);
   require_apart("parameters", parameters);
   for (const Effect& effect : info.effects) {
     require("name of an effect", effect.name);
