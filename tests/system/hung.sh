@@ -36,8 +36,8 @@ hung task1 1 "store a payload" "task .* on rank 0"
 hung task2 2 "store a payload" "task .* on rank [01]"
 hung starts 1 "the search for starts" "the search for starts"
 hung scales 2 "the choice of scales" "the choice of scales"
-hung timed 1 "store a payload" "task .* on rank 0" --set limits.time=1
-hung timed_starts 1 "the search for starts" "the search for starts" --set limits.time=1
+hung timed 1 "store a payload" "task .* on rank 0" --set limits.time=8
+hung timed_starts 1 "the search for starts" "the search for starts" --set limits.time=8
 for job in "${jobs[@]}"; do wait "$job" || failed=1; done
 [ -z "${failed:-}" ] || exit 1
 for name in task1 task2 starts scales timed timed_starts; do
