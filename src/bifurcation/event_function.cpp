@@ -7,6 +7,7 @@
 
 #include "orbweaver/bifurcation/parted_crossings.hpp"
 #include "orbweaver/bifurcation/slopes.hpp"
+#include "orbweaver/bifurcation/stability_of_orbit.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 
@@ -138,9 +139,7 @@ std::optional<Crossing> EventFunction::at(double position, bool whole, bool tell
   const auto known = fold || is_birth(position) ? _known.end() : _known.find(position);
   if (known != _known.end()) out.stability = known->second.stability;
   if (known == _known.end() && (whole || !fold)) try {
-      spectrum::FloquetOptions options;
-      options.team = _family.options().corrector.team;
-      out.stability = spectrum::floquet(_system, out.point.loop, _family.isotropy(), options);
+      out.stability = stability_of(_system, out.point.loop, _family.isotropy(), _family.options().corrector.team);
     } catch (const core::NumericalError& error) {
       if (_event.kind == Event::Kind::test_function)
         return without_value(NotLocated::Reason::no_multipliers, position, out.point.loop.period, error.what());

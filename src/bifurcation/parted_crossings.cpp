@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "orbweaver/bifurcation/stability_of_orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/numerics/locate.hpp"
@@ -53,10 +54,9 @@ std::optional<std::array<Parted, 2>> parted_crossings(const systems::System& sys
     const auto point = family.at(position);
     if (!point) return {unknown, unknown};
     try {
-      spectrum::FloquetOptions options;
-      options.team = family.options().corrector.team;
-      const spectrum::Stability stability = spectrum::floquet(system, point->loop, family.isotropy(), options);
-      return determinant_deviation(system.structure(), stability, sector);
+      return determinant_deviation(
+          system.structure(), stability_of(system, point->loop, family.isotropy(), family.options().corrector.team),
+          sector);
     } catch (const core::NumericalError&) {
       return {unknown, unknown};
     }

@@ -13,12 +13,16 @@
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/corrector/correct.hpp"
+#include "orbweaver/loop/curve/measures.hpp"
 
 namespace orbweaver::continuation {
 
 using equations::Collocation;
 
 namespace {
+
+/// Of the amplitude: a change far above rounding, whose square is far below it.
+constexpr double seen = 1e-7;
 
 /// Signs that follow no pattern of the equations'.
 std::vector<double> random_signs(std::size_t count) {
@@ -105,11 +109,20 @@ LeftOpen left_open_by_rounding(const systems::System& system, const loop::Loop& 
     };
     const double part = product(moved, direction) / product(direction, direction);
     for (std::size_t n = 0; n < moved.size(); ++n) moved[n] -= part * direction[n];
-    LeftOpen open{.across = std::sqrt(product(moved, moved)),
-                  .period = std::abs(moved[static_cast<std::size_t>(e.period_at())])};
+    LeftOpen open;
+    open.across = std::sqrt(product(moved, moved));
+    open.period = std::abs(moved[static_cast<std::size_t>(e.period_at())]);
     if (!std::isfinite(open.across)) return {};
-    for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += values[n];
-    const loop::Loop there = e.to_loop(moved.data());
+    const auto loop_at = [&](double share) {
+      std::vector<double> there = values;
+      for (std::size_t n = 0; n < there.size(); ++n) there[n] += share * moved[n];
+      return e.to_loop(there.data());
+    };
+    const loop::Loop there = loop_at(1.0);
+    if (open.across > 0.0) {
+      open.times = open.across / (seen * loop::rms_amplitude(orbit));
+      open.beside = loop_at(1.0 / open.times);
+    }
     if (system.structure().conservative()) open.energy = std::abs(energy_of(system, there) - energy_of(system, orbit));
     if (!orbit.parameters.empty()) open.parameter = std::abs(there.parameters.front() - orbit.parameters.front());
     return open;

@@ -62,14 +62,17 @@ std::optional<OnLimit> StepLimits::closing_orbit(const Trial& trial, double leng
     if (!closing.trial) return closing;
     const double distance = distance_between_orbits(_system, _frontier.first, closing.trial->loop);
     const bool is_first = distance <= same_within(_frontier.first);
-    // A shorter step tells.
-    if (!is_first &&
-        (_problem.resolution().size != size || square(closing.trial->values, prediction.values) > off_step))
-      return failure(passed, "another orbit is beside it");
-    if (_problem.resolution().size != size || !(distance < phase_progress * least)) {
-      _frontier.has_come_back = is_first;
-      return is_first ? std::optional(std::move(closing)) : std::nullopt;
+    const bool is_settled = _problem.resolution().size != size || !(distance < phase_progress * least);
+    if (is_settled && is_first) {
+      _frontier.has_come_back = true;
+      return closing;
     }
+    // Which of the two the branch passes, where both may lie on this step, a shorter one tells.
+    if (!is_first &&
+        (_problem.resolution().size != size || square(closing.trial->values, prediction.values) > off_step ||
+         (is_settled && distance * distance < off_step)))
+      return failure(passed, "another orbit is beside it");
+    if (is_settled) return std::nullopt;
     least = distance;
     there = first_beside(closing.trial->loop);
     prediction.values = std::move(closing.trial->values);

@@ -1,9 +1,11 @@
+#include <array>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "bifurcation/sweep.hpp"
 #include "continuation/families.hpp"
+#include "orbweaver/bifurcation/stability_of_orbit.hpp"
 #include "orbweaver/spectrum/floquet.hpp"
 
 namespace pendulum_test {
@@ -50,6 +52,26 @@ TEST(PendulumCrossings, InPhase) {
                                       {6, 1, 10.180534055738},
                                       {8, 1, 10.287065170436},
                                       {1, 0, 10.416773281973249}});
+}
+
+// Where the family without the reversor leaves, an index is 2. Rounding moves orbits that keep the half turn alone along
+// that family, and their index with them: by more than the bound of one loop's index says.
+TEST(StabilityOfAnOrbit, KnowsAnIndexNoBetterThanTheOrbit) {
+  const auto system = test::pendulum();
+  const loop::Isotropy isotropy = test::pendulum_isotropy(*system);
+  const loop::Isotropy half_turn{isotropy.front().reversing ? isotropy.back() : isotropy.front()};
+  const test::Trace& family = test::family_to_twelve(test::in_phase());
+  const auto errors_at = [&](double period, const loop::Isotropy& kept) {
+    const loop::Loop orbit = test::orbit_at(family, period).loop;
+    return std::array{spectrum::floquet(*system, orbit, kept).fundamental_error.front(),
+                      bifurcation::stability_of(*system, orbit, kept).fundamental_error.front()};
+  };
+  const auto [of_loop, of_orbit] = errors_at(10.416773282, half_turn);
+  EXPECT_GT(of_orbit, 100.0 * of_loop);
+  const auto [regular_loop, regular_orbit] = errors_at(9.0, half_turn);
+  EXPECT_EQ(regular_orbit, regular_loop);
+  const auto [kept_loop, kept_orbit] = errors_at(10.416773282, isotropy);
+  EXPECT_LT(kept_orbit, 10.0 * kept_loop);
 }
 
 TEST(PendulumCrossings, OutPhase) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "orbweaver/loop/curve/loop.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -12,6 +14,8 @@ struct LeftOpen {
   double period = 0.0;     ///< by how much its period is moved there,
   double energy = 0.0;     ///< and its energy
   double parameter = 0.0;  ///< and the parameter that moves along its family
+  std::optional<loop::Loop> beside{};  ///< the loop moved that way, as little as is seen; none where nothing is known
+  double times = 0.0;                  ///< as far as from the loop to that it may be moved so often
 };
 
 /// By the equations of an orbit with this isotropy on its own fundamental domain, linearised there, with residuals as

@@ -233,7 +233,9 @@ class Location {
     _outcome.kernel_singular_value = kernel.largest();
     _outcome.next_singular_value = kernel.next();
     if (kernel.dimension() == 0 && !_event.tangency) return without_kernel(crossing, kernel, family);
-    if (sector.q == 1 && kernel.dimension() == 1 && turns_at(crossing, family)) return as_fold(kernel);
+    // A fold alone passes 2: where the index touches it there, a family of more symmetry crosses.
+    if (sector.q == 1 && !_event.tangency && kernel.dimension() == 1 && turns_at(crossing, family))
+      return as_fold(kernel);
     if ((_event.tangency || _event.is_double) && kernel.dimension() < expected)
       return touching(crossing, kernel, expected);
     _breaks_symmetry = sector.q > 1 || breaks_symmetry(kernel, isotropy);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "certified.hpp"
+#include "orbweaver/bifurcation/stability_of_orbit.hpp"
 #include "orbweaver/bifurcation/test_functions.hpp"
 #include "orbweaver/continuation/left_open.hpp"
 #include "orbweaver/core/error.hpp"
@@ -34,9 +35,7 @@ std::string nearer_than_rounding(const systems::System& system, const loop::Loop
 std::optional<spectrum::Stability> stability_of(const systems::System& system, const loop::Loop& loop,
                                                 const loop::Isotropy& isotropy, core::Team* team) {
   try {
-    spectrum::FloquetOptions options;
-    options.team = team;
-    return spectrum::floquet(system, loop, isotropy, options);
+    return bifurcation::stability_of(system, loop, isotropy, team);
   } catch (const core::NumericalError&) {
     return std::nullopt;
   }
