@@ -33,20 +33,28 @@ survey::Summary survey_of(const core::Communicator& comm, const Parameters& para
 }
 
 // One curve from one oscillation to the other, as both begin there. A family on it is a circle, along which no reversor
-// holds the phase.
+// holds the phase. An index touches 2 where the reversor fixes its orbits: rounding made two crossings of that with some
+// of these steps and first orbits.
 TEST(MagneticWell, OneCurveJoinsBothOscillations) {
   const core::Communicator comm;
   const Parameters parameters{{"k2", 0.99},  {"b", 0.0},    {"e", -0.178}, {"a1", -0.475}, {"a2", 0.224},
                               {"a3", 0.115}, {"a4", 0.197}, {"q", 0.278},  {"c", 0.593}};
-  const survey::Summary summary = survey_of(comm, parameters, "joined");
-  if (!comm.is_root()) return;
-  EXPECT_EQ(summary.failures, 0U);
-  const test::Atlas atlas(summary.atlas);
-  EXPECT_THAT(atlas.families().texts("name"), ElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 1 B"));
-  EXPECT_LT(atlas.orbits().rows(), 300U);
-  EXPECT_THAT(summary.remarks, Contains(HasSubstr("the reversor (x, y, px, py) -> (x, y, -px, -py)")));
-  EXPECT_THAT(summary.remarks,
-              Contains(HasSubstr("Equilibrium 1, mode 2 lies on Equilibrium 1, mode 1, at T = 6.283185")));
+  for (const std::string start : {"0.0017", "0.0087", "0.0436"})
+    for (const std::string step : {"adaptive", "0.05", "0.2"}) {
+      SCOPED_TRACE(start + " " + step);
+      const survey::Summary summary =
+          survey_of(comm, parameters, "joined", {"continuation.start=" + start, "continuation.step=" + step});
+      if (!comm.is_root()) continue;
+      EXPECT_EQ(summary.failures, 0U);
+      const test::Atlas atlas(summary.atlas);
+      EXPECT_THAT(atlas.families().texts("name"), ElementsAre("Equilibrium 1, mode 1", "Equilibrium 1, mode 1 B"));
+      EXPECT_THAT(atlas.families().texts("end_reason")[1], HasSubstr("closed loop"));
+      EXPECT_EQ(atlas.crossings().rows(), 8U);
+      EXPECT_LT(atlas.orbits().rows(), 300U);
+      EXPECT_THAT(summary.remarks, Contains(HasSubstr("the reversor (x, y, px, py) -> (x, y, -px, -py)")));
+      EXPECT_THAT(summary.remarks,
+                  Contains(HasSubstr("Equilibrium 1, mode 2 lies on Equilibrium 1, mode 1, at T = 6.283185")));
+    }
 }
 
 // The slow family is born on the fast one gone around three times, and turns on the way: from first orbits beyond that
