@@ -109,6 +109,34 @@ TEST_F(WitnessOf, ACurveStoredTwice) {
   EXPECT_THAT(said.records[0].text, HasSubstr("Curved: the same orbits are stored in Again"));
 }
 
+// Each is said to be the same as one other, not as all: what is the same as that needs no comparison.
+TEST_F(WitnessOf, CopiesOfAFamilyStandForOneAnother) {
+  constexpr std::size_t copies = 12;
+  if (world->is_root()) {
+    const auto orbits = orbits_of(key_named("Curved"));
+    for (std::size_t n = 0; n < copies; ++n) {
+      const std::string key = fmt::format("0000.{}", 9000 + n);
+      add_family_like("Curved", key).name = fmt::format("Copy {}", n);
+      for (archive::OrbitRecord orbit : orbits) {
+        orbit.family_key = key;
+        records.orbits.push_back(orbit);
+      }
+    }
+  }
+  const std::vector<Found> rows = found();
+  if (!world->is_root()) return;
+  std::set<std::int64_t> told;
+  std::size_t findings = 0;
+  for (const Found& row : rows) {
+    if (row.kind != "duplicate-curve") continue;
+    ++findings;
+    told.insert(row.family);
+    told.insert(row.other_family);
+  }
+  EXPECT_EQ(findings, copies);
+  EXPECT_EQ(told.size(), copies + 1) << "all of them, and the family itself";
+}
+
 // Another family with the same numbers, whose loops are others but for one of them, so that the orbit after it lies on
 // both; then with a crossing at that orbit.
 TEST_F(WitnessOf, OneOrbitOfTwoFamilies) {

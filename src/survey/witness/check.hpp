@@ -19,8 +19,12 @@ class Check {
   Check& operator=(Check&&) = delete;
   virtual ~Check() = default;
 
-  /// Where numbers do not decide: loops to be compared, by whatever rank is free. Pure.
-  [[nodiscard]] virtual std::vector<LoopQuestion> questions(const Evidence& /*evidence*/) const { return {}; }
+  /// Where numbers do not decide: loops to be compared, by whatever rank is free. Asked for again until there are none,
+  /// with the answers to the last ones.
+  [[nodiscard]] virtual std::vector<LoopQuestion> questions(const Evidence& /*evidence*/,
+                                                            std::span<const Answered> /*last*/) {
+    return {};
+  }
   /// What does not add up. `answered`: all questions, in their order. Pure.
   [[nodiscard]] virtual std::vector<Finding> findings(const Evidence& evidence,
                                                       std::span<const Answered> answered) const = 0;

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
@@ -20,7 +19,13 @@ constexpr double same_beginning = 1e-8;
 
 Evidence::Evidence(const AtlasTree& tree_, std::shared_ptr<const systems::System> system_, const scene::Scene& scene_,
                    WitnessInput input)
-    : tree(tree_), system(std::move(system_)), scene(scene_), known(std::move(input)), index(tree_) {
+    : tree(tree_),
+      system(std::move(system_)),
+      scene(scene_),
+      known(std::move(input)),
+      symmetries(loop::SymmetryGroup::of_space(system->structure())),
+      index(tree_),
+      means(tree_, *system, symmetries) {
   const auto to_row = [&](int& crossing) {
     if (crossing >= 0) crossing = known.crossing_rows[static_cast<std::size_t>(crossing)];
   };
@@ -81,8 +86,7 @@ bool Evidence::begins_at_image(const systems::AffineMap& map, int row, int other
 
 bool Evidence::begin_at_images(int row, int other) const {
   if (begins_at_image(systems::AffineMap::identity(system->dimension()), row, other)) return false;
-  const loop::SymmetryGroup group = loop::SymmetryGroup::of_space(system->structure());
-  return std::any_of(group.elements().begin(), group.elements().end(),
+  return std::any_of(symmetries.elements().begin(), symmetries.elements().end(),
                      [&](const loop::SymmetryElement& element) { return begins_at_image(element.map, row, other); });
 }
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "curve_index.hpp"
+#include "family_means.hpp"
+#include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/atlas/atlas_tree.hpp"
 #include "orbweaver/survey/witness/finding.hpp"
@@ -48,7 +50,9 @@ struct Evidence {
   std::shared_ptr<const systems::System> system;
   const scene::Scene& scene;
   WitnessInput known;  ///< crossings are rows of the atlas
+  loop::SymmetryGroup symmetries;
   CurveIndex index;
+  FamilyMeans means;
   std::set<int> failed;  ///< rows of families that a failed task was about
 
   /// Row of the family with this key; -1: none.

@@ -40,26 +40,35 @@ class Witness {
   Witness(const std::filesystem::path& atlas, const scene::Scene& scene,
           const std::shared_ptr<const systems::System>& system, WitnessInput input)
       : _atlas(atlas), _tree(_atlas, witness_tolerance), _evidence(_tree, system, scene, std::move(input)) {
-    if (!_evidence.known.stopped_early)
-      for (const auto& check : _checks) _questions.push_back(check->questions(_evidence));
-    _questions.resize(_checks.size());
+    if (_evidence.known.stopped_early) return;
+    for (std::size_t n = 0; n < _checks.size(); ++n) _asked[n].questions = _checks[n]->questions(_evidence, {});
   }
 
+  /// The loops to be compared next; none: all have been.
   [[nodiscard]] std::vector<queue::Task> tasks() const {
     std::vector<queue::Task> tasks;
-    for (const std::vector<LoopQuestion>& asked : _questions)
-      for (const LoopQuestion& question : asked) tasks.push_back(task_of(question, tasks.size()));
+    for (const Asked& asked : _asked)
+      for (const LoopQuestion& question : asked.questions) tasks.push_back(task_of(question, tasks.size()));
     return tasks;
   }
 
-  /// `outcomes`: in the order of the tasks.
-  [[nodiscard]] Testimony testimony(const std::vector<queue::TaskOutcome>& outcomes) const {
-    std::vector<Finding> findings;
+  /// `outcomes`: of these tasks, in their order.
+  void hear(const std::vector<queue::TaskOutcome>& outcomes) {
     std::size_t next = 0;
     for (std::size_t n = 0; n < _checks.size(); ++n) {
-      std::vector<Answered> answered;
-      for (const LoopQuestion& question : _questions[n]) answered.push_back({question, reply_in(outcomes[next++])});
-      const std::vector<Finding> found = _checks[n]->findings(_evidence, answered);
+      Asked& asked = _asked[n];
+      if (asked.questions.empty()) continue;
+      const std::size_t known = asked.answered.size();
+      for (const LoopQuestion& question : asked.questions)
+        asked.answered.push_back({question, reply_in(outcomes[next++])});
+      asked.questions = _checks[n]->questions(_evidence, std::span(asked.answered).subspan(known));
+    }
+  }
+
+  [[nodiscard]] Testimony testimony() const {
+    std::vector<Finding> findings;
+    for (std::size_t n = 0; n < _checks.size(); ++n) {
+      const std::vector<Finding> found = _checks[n]->findings(_evidence, _asked[n].answered);
       findings.insert(findings.end(), found.begin(), found.end());
     }
     std::stable_sort(findings.begin(), findings.end(),
@@ -80,7 +89,12 @@ class Witness {
   AtlasTree _tree;
   Evidence _evidence;
   std::vector<std::unique_ptr<Check>> _checks = all_checks();
-  std::vector<std::vector<LoopQuestion>> _questions;  // by check
+  /// Of a check: what it asks, and all answers.
+  struct Asked {
+    std::vector<LoopQuestion> questions;
+    std::vector<Answered> answered;
+  };
+  std::vector<Asked> _asked = std::vector<Asked>(_checks.size());
 };
 
 }  // namespace
@@ -89,16 +103,18 @@ std::optional<Testimony> testify(const core::Communicator& comm, const std::file
                                  const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
                                  WitnessInput input) {
   std::optional<Witness> witness;
-  std::vector<queue::Task> tasks;
-  core::on_root(comm.get(), [&] {
-    witness.emplace(atlas, scene, system, std::move(input));
-    tasks = witness->tasks();
-  });
+  core::on_root(comm.get(), [&] { witness.emplace(atlas, scene, system, std::move(input)); });
   LoopExecutor executor(core::agreed(comm.get(), atlas.string()), system);
-  const auto outcomes = queue::run_for_outcomes(comm, std::move(tasks), executor);
-  if (!outcomes) return std::nullopt;
+  for (bool has_asked = true; has_asked;) {
+    std::vector<queue::Task> tasks;
+    core::on_root(comm.get(), [&] { tasks = witness->tasks(); });
+    has_asked = core::agreed(comm.get(), !tasks.empty());
+    const auto outcomes = queue::run_for_outcomes(comm, std::move(tasks), executor);
+    if (!outcomes) return std::nullopt;
+    core::on_root(comm.get(), [&] { witness->hear(*outcomes); });
+  }
   Testimony testimony;
-  core::on_root(comm.get(), [&] { testimony = witness->testimony(*outcomes); });
+  core::on_root(comm.get(), [&] { testimony = witness->testimony(); });
   testimony.wrong = core::agreed(comm.get(), testimony.wrong);
   return testimony;
 }

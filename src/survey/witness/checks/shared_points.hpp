@@ -15,8 +15,9 @@ namespace orbweaver::survey {
 /// A family that passes through a crossing of another one is born there, ends there, or has a crossing there itself.
 class SharedPoints final : public Check {
  public:
-  [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
+  [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence, std::span<const Answered> last) override {
     std::vector<LoopQuestion> asked;
+    if (!last.empty()) return asked;
     const std::map<int, std::vector<int>> known = places_known(evidence);
     for (std::size_t row = 0; row < evidence.tree.crossings.size(); ++row) {
       const TreeCrossing& crossing = evidence.tree.crossings[row];
@@ -37,6 +38,7 @@ class SharedPoints final : public Check {
         const auto& [away, segment] = place;
         if (!std::isfinite(away) || is_known(evidence, known, family, x)) continue;
         if (segment == 0 && is_by_birth(evidence, family, crossing, x)) continue;
+        if (!evidence.means.may_meet(crossing.family, family)) continue;
         asked.push_back({crossing.family, 0, static_cast<int>(row), family, static_cast<int>(segment)});
       }
     }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
+#include <cstddef>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -21,26 +22,41 @@ namespace orbweaver::survey {
 /// them as well.
 class StoredTwice final : public Check {
  public:
-  [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence) const override {
+  /// Of each family the next one before it, or itself, with which it may have a curve in common. Families that are the
+  /// same stand for one another: of those that one was found to be, no other is asked about.
+  [[nodiscard]] std::vector<LoopQuestion> questions(const Evidence& evidence, std::span<const Answered> last) override {
+    for_each_pair(last, [&](const Pair& pair, std::span<const Answered> of_pair) {
+      const int first = stands_for(pair.first);
+      const int second = stands_for(pair.second);
+      if (first != second && std::all_of(of_pair.begin(), of_pair.end(), [](const auto& a) { return a.reply.same; }))
+        _turns[static_cast<std::size_t>(second)].same = first;
+    });
+    _turns.resize(evidence.tree.families.size());
     std::vector<LoopQuestion> asked;
-    for (const auto& [pair, hits] : candidates(evidence)) {
-      if (hits.size() < least_hits) continue;
-      const std::size_t count = std::min(compared, hits.size());
-      for (std::size_t c = 0; c < count; ++c) asked.push_back(hits[(2 * c + 1) * hits.size() / (2 * count)]);
+    for (int row = 0; row < static_cast<int>(_turns.size()); ++row) {
+      Turn& turn = _turns[static_cast<std::size_t>(row)];
+      while (turn.next <= row) {
+        const int other = turn.next++;
+        if (!may_be_same(evidence, row, other)) continue;
+        const std::vector<LoopQuestion> hits = hits_of(evidence, other, row);
+        if (hits.size() < least_hits) continue;
+        const std::size_t count = std::min(compared, hits.size());
+        for (std::size_t c = 0; c < count; ++c) asked.push_back(hits[(2 * c + 1) * hits.size() / (2 * count)]);
+        turn.asked.push_back(other);
+        break;
+      }
     }
     return asked;
   }
 
   [[nodiscard]] std::vector<Finding> findings(const Evidence& evidence,
                                               std::span<const Answered> answered) const override {
+    std::vector<Answered> by_pair(answered.begin(), answered.end());
+    std::stable_sort(by_pair.begin(), by_pair.end(),
+                     [](const Answered& a, const Answered& b) { return pair_of(a.question) < pair_of(b.question); });
     std::vector<Finding> found;
-    for (std::size_t begin = 0; begin < answered.size();) {
-      const Pair pair = pair_of(answered[begin].question);
-      std::size_t end = begin;
-      while (end < answered.size() && pair_of(answered[end].question) == pair) ++end;
-      judge(evidence, pair, answered.subspan(begin, end - begin), found);
-      begin = end;
-    }
+    for_each_pair(by_pair,
+                  [&](const Pair& pair, std::span<const Answered> of_pair) { judge(evidence, pair, of_pair, found); });
     return found;
   }
 
@@ -59,33 +75,60 @@ class StoredTwice final : public Check {
 
   static Pair pair_of(const LoopQuestion& question) { return std::minmax(question.family, question.beside); }
 
-  // By pair of families, the orbits of one whose invariants lie on the other's curve.
-  static std::map<Pair, std::vector<LoopQuestion>> candidates(const Evidence& evidence) {
-    std::map<Pair, std::vector<LoopQuestion>> hits;
-    std::map<Pair, bool> images;
-    for (std::size_t row = 0; row < evidence.tree.families.size(); ++row) {
-      const std::vector<Invariants>& points = evidence.tree.families[row].curve.points();
-      for (std::size_t n = 0; n < points.size(); ++n) {
-        const Invariants& x = points[n];
-        int last = -1;  // one hit a family and orbit
-        for (const auto& [other, segment] :
-             evidence.index.near(x.value(Invariant::period), x.value(Invariant::level),
-                                 floors * x.floor_of(Invariant::period), floors * x.floor_of(Invariant::level))) {
-          const int own = static_cast<int>(row);
-          if (other == last || (other == own && is_own(evidence.tree.families[row], n, segment))) continue;
-          const Pair pair = std::minmax(own, other);
-          if (other != own) {
-            const auto [known, is_new] = images.try_emplace(pair, false);
-            if (is_new) known->second = are_images(evidence, own, other);
-            if (known->second) continue;
-          }
-          if (!evidence.family(other).curve.fit_near(x, segment, 0).fits()) continue;
-          last = other;
-          hits[pair].push_back({own, static_cast<int>(n), -1, other, static_cast<int>(segment)});
-        }
-      }
+  /// How far a family has come in the list of those before it.
+  struct Turn {
+    int next = 0;
+    int same = -1;           ///< an earlier family that is the same curve; -1: none is known
+    std::vector<int> asked;  ///< earlier families that it was held against
+  };
+  std::vector<Turn> _turns;  // by row
+
+  /// The first of the families that are known to be the same as this one.
+  [[nodiscard]] int stands_for(int row) const {
+    while (_turns[static_cast<std::size_t>(row)].same >= 0) row = _turns[static_cast<std::size_t>(row)].same;
+    return row;
+  }
+
+  [[nodiscard]] bool may_be_same(const Evidence& evidence, int row, int other) const {
+    if (row == other) return true;
+    const int first = stands_for(other);
+    if (first == stands_for(row)) return false;
+    const std::vector<int>& asked = _turns[static_cast<std::size_t>(row)].asked;
+    return std::none_of(asked.begin(), asked.end(), [&](int one) { return stands_for(one) == first; }) &&
+           evidence.index.may_meet(other, row, floors) && evidence.means.may_meet(other, row) &&
+           !are_images(evidence, other, row);
+  }
+
+  template <class Visitor>
+  static void for_each_pair(std::span<const Answered> answered, const Visitor& visit) {
+    for (std::size_t begin = 0, end = 0; begin < answered.size(); begin = end) {
+      const Pair pair = pair_of(answered[begin].question);
+      while (end < answered.size() && pair_of(answered[end].question) == pair) ++end;
+      visit(pair, answered.subspan(begin, end - begin));
     }
+  }
+
+  /// The orbits of one of two families whose invariants lie on the other's curve.
+  static std::vector<LoopQuestion> hits_of(const Evidence& evidence, int first, int second) {
+    std::vector<LoopQuestion> hits;
+    add_hits(evidence, first, second, hits);
+    if (first != second) add_hits(evidence, second, first, hits);
     return hits;
+  }
+
+  static void add_hits(const Evidence& evidence, int own, int other, std::vector<LoopQuestion>& hits) {
+    const std::vector<Invariants>& points = evidence.family(own).curve.points();
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const Invariants& x = points[n];
+      const auto near =
+          evidence.index.near_on(other, x.value(Invariant::period), x.value(Invariant::level),
+                                 floors * x.floor_of(Invariant::period), floors * x.floor_of(Invariant::level));
+      const auto hit = std::find_if(near.begin(), near.end(), [&](const CurveIndex::Segment& at) {
+        return !(other == own && is_own(evidence.family(own), n, at.segment)) &&
+               evidence.family(other).curve.fit_near(x, at.segment, 0).fits();
+      });
+      if (hit != near.end()) hits.push_back({own, static_cast<int>(n), -1, other, static_cast<int>(hit->segment)});
+    }
   }
 
   static bool is_own(const TreeFamily& family, std::size_t orbit, std::size_t segment) {
