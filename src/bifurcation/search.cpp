@@ -55,18 +55,21 @@ struct Search {
   }
 
   // Newton's method turns away from the direction that it is pinned to, or stalls on the way: it is pinned again to the
-  // one it came to, until that stays. Then the part in the kernel has the amplitude itself.
+  // one it came to, with the period it came to, until that stays. Then the part in the kernel has the amplitude itself.
   template <class Unwanted>
-  [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, const Unwanted& unwanted,
+  [[nodiscard]] std::optional<FoundOrbit> settle(Eigen::VectorXd pinned, double period, const Unwanted& unwanted,
                                                  bool* is_unwanted = nullptr) const {
+    loop::Loop from = base;
+    from.period = period;
     for (int pins = 0; pins < most_pins; ++pins) {
       const corrector::Result result =
-          born_orbit(system, base, group.vector_at(pinned), isotropy, amplitude, options.corrector);
+          born_orbit(system, from, group.vector_at(pinned), isotropy, amplitude, options.corrector);
       const std::optional<Gap> gap = near_gap(result.loop);
       if (!gap) return std::nullopt;
       const double length = gap->inside.norm();
       const double tilt = (gap->inside / length - pinned).norm();
       pinned = gap->inside / length;
+      from.period = result.loop.period;
       if (result.converged() && unwanted(pinned)) {
         if (is_unwanted != nullptr) *is_unwanted = true;
         return std::nullopt;
@@ -79,9 +82,11 @@ struct Search {
   }
 
   // Neighbouring directions lead back to it, or on to one that is `taken`: it is neither one of a continuum nor one
-  // where the loss, at this amplitude, is below its threshold along all directions.
+  // where the loss, at this amplitude, is below its threshold along all directions. They are sought from its period:
+  // with another one Newton's method may leave it wherever it begins (a ring of Toda particles).
   template <class Taken>
-  [[nodiscard]] bool is_isolated(const Eigen::VectorXd& v, double nudge, const Taken& taken) const {
+  [[nodiscard]] bool is_isolated(const FoundOrbit& orbit, double nudge, const Taken& taken) const {
+    const Eigen::VectorXd& v = orbit.coordinates;
     Eigen::MatrixXd along = v;
     if (group.constant()) {
       along.conservativeResize(Eigen::NoChange, 2);
@@ -90,7 +95,8 @@ struct Search {
     const Eigen::Index others = v.size() - along.cols();
     const Eigen::MatrixXd axes = along.householderQr().householderQ();
     for (const Eigen::VectorXd& aside : axes.rightCols(others).colwise()) {
-      const auto back = settle((v + nudge * aside).normalized(), [](const Eigen::VectorXd&) { return false; });
+      const auto none = [](const Eigen::VectorXd&) { return false; };
+      const auto back = settle((v + nudge * aside).normalized(), orbit.loop.period, none);
       if (!back) return false;
       if ((back->coordinates - v).norm() > returned * nudge && !taken(back->coordinates)) return false;
     }
@@ -107,8 +113,9 @@ struct Search {
     if (own.size() <= isotropy.size()) return std::nullopt;
     const Search among{system, base, group, own, amplitude, options};
     const auto none = [](const Eigen::VectorXd&) { return false; };
-    std::optional<FoundOrbit> found = among.settle(gap_between(base, standard, group, {}).inside.normalized(), none);
-    if (!found || !among.is_isolated(found->coordinates, nudge, taken)) return std::nullopt;
+    std::optional<FoundOrbit> found =
+        among.settle(gap_between(base, standard, group, {}).inside.normalized(), base.period, none);
+    if (!found || !among.is_isolated(*found, nudge, taken)) return std::nullopt;
     return found;
   }
 };
@@ -146,10 +153,10 @@ SearchResult search_directions(const systems::System& system, const loop::Loop& 
   };
   for (std::size_t n = 0; n < starts.size(); ++n) {
     bool is_known = false;
-    auto orbit = search.settle(Eigen::VectorXd(starts[n]), is_taken, &is_known);
+    auto orbit = search.settle(Eigen::VectorXd(starts[n]), base.period, is_taken, &is_known);
     if (!orbit && !is_known) ++out.lost;
     if (!orbit) continue;
-    if (!search.is_isolated(orbit->coordinates, nudge, is_taken)) {
+    if (!search.is_isolated(*orbit, nudge, is_taken)) {
       orbit = are_isolated ? search.isolated_by_symmetry(*orbit, nudge, is_taken) : std::nullopt;
       if (!orbit) ++out.not_isolated;
       if (!orbit) continue;

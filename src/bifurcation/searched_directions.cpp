@@ -205,7 +205,7 @@ Directions searched_directions(const systems::System& system, const KernelAction
       "a kernel of dimension {} (q = {}): {} directions found at amplitude {:.2g}, {} where orbits are not isolated",
       group.dimension(), q, best.found.size(), amplitude, best.not_isolated);
   out.not_isolated = best.not_isolated;
-  if (lines.empty() && best.found.empty())
+  if (lines.empty() && best.found.empty() && !(constant && best.not_isolated > 0))
     throw core::NumericalError(seen + "; they form a continuum, or the loss does not tell them apart");
   if ((best.not_isolated > 0 && !constant) || static_cast<int>(best.found.size()) < expected) core::log_warning(seen);
   // Where all that there can be are found, what is not isolated is none of them.

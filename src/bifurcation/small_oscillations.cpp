@@ -121,7 +121,7 @@ class Gatherer {
   void add(const starts::DegenerateMode& mode) {
     const Directions directions = directions_of(mode);
     _not_isolated.push_back(directions.not_isolated);
-    if (directions.found.empty()) add_without_family(mode);
+    if (directions.found.empty()) add_without_family(mode, directions.doubt);
     for (const Direction& direction : directions.found) {
       const loop::Tangent tangent = at_unit_start(direction.base, direction.tangent);
       SmallOscillation family{{mode.period, mode.grid_period, mode.residual, tangent, tangent, direction.isotropy}};
@@ -132,8 +132,10 @@ class Gatherer {
     }
   }
 
-  void add_without_family(const starts::SharedPeriod& shared) {
+  /// `doubt`: why there may be some all the same.
+  void add_without_family(const starts::SharedPeriod& shared, const std::string& doubt) {
     _entries.push_back({shared.period, shared.members.front().oscillation, {}, {shared.period, 0, 1, true}});
+    if (!doubt.empty()) return _all.without_family.push_back({shared.period, doubt});
     std::vector<std::string> others;
     for (const starts::SharedPeriod::Member& member : shared.members)
       if (member.harmonic > 1)

@@ -21,13 +21,15 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-std::vector<Direction> directions_at_origin(const systems::System& system) {
+Directions all_at_origin(const systems::System& system) {
   const std::vector<double> origin(4, 0.0);
   const starts::SweepResult swept = starts::sweep(system, origin, {.period_from = 6.0, .period_to = 6.5, .step = 0.05});
   EXPECT_EQ(swept.degenerate.size(), 1u);
   const starts::DegenerateMode& mode = swept.degenerate.at(0);
-  return equilibrium_directions(system, origin, mode, 10).found;
+  return equilibrium_directions(system, origin, mode, 10);
 }
+
+std::vector<Direction> directions_at_origin(const systems::System& system) { return all_at_origin(system).found; }
 
 std::vector<std::string> isotropies(const std::vector<Direction>& directions) {
   std::vector<std::string> out;
@@ -248,8 +250,10 @@ TEST(Equilibrium, AContinuumOfDirectionsIsLeftOut) {
   const CoupledOscillators bare(CoupledOscillators::described(CoupledOscillators::Says::nothing), 1.0);
   EXPECT_EQ(kinds(directions_at_origin(bare)), (std::vector<std::string>{"loop", "other loop"}));
   // Two uncoupled linear oscillators: nothing is isolated.
-  EXPECT_THROW(static_cast<void>(directions_at_origin(CoupledOscillators(bare.structure(), 0.0, 0.0))),
-               core::NumericalError);
+  const Directions none = all_at_origin(CoupledOscillators(bare.structure(), 0.0, 0.0));
+  EXPECT_TRUE(none.found.empty());
+  EXPECT_GT(none.not_isolated, 0);
+  EXPECT_FALSE(none.doubt.empty());
 }
 
 // A single oscillation has one direction, with or without a reversor.

@@ -1,4 +1,5 @@
 // Families at equilibria whose frequencies are in ratio, against normal forms and shooting.
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -54,6 +55,73 @@ class TwoToOne final : public test::PointSystem {
   double _second;
 };
 
+/// Three equal particles on a ring, each pulled by exp of its distance from the next (Toda), in the plane across their
+/// centre: integrable. To fourth order the energy is I1 + I2 + c (I1^2 + I2^2) in the actions of the two waves around
+/// the ring: each alone is a family, and those with I1 = I2 have one period at all phases.
+class TodaRing final : public test::PointSystem {
+ public:
+  TodaRing() : PointSystem(described()) {}
+
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    const Eigen::VectorXd g = gradient_at(z);
+    return Eigen::Vector4d(g(2), g(3), -g(0), -g(1));
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
+    a.topRightCorner<2, 2>().setIdentity();
+    for (const Eigen::Vector2d& k : pulls()) a.bottomLeftCorner<2, 2>() -= k * k.transpose() * pull(k, z) / 24.0;
+    return a;
+  }
+  [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
+    Eigen::Vector4d g(0.0, 0.0, z(2), z(3));
+    for (const Eigen::Vector2d& k : pulls()) g.head<2>() += k * pull(k, z) / 24.0;
+    return g;
+  }
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
+    double energy = (z[2] * z[2] + z[3] * z[3]) / 2.0;
+    for (const Eigen::Vector2d& k : pulls()) energy += std::exp(k(0) * z[0] + k(1) * z[1]) / 24.0;
+    return energy;
+  }
+
+ private:
+  static systems::Structure described() {
+    systems::Structure d = test::structure_of(4, true, true);
+    d.reversors = {{"R", Eigen::Matrix4d(Eigen::Vector4d(1, 1, -1, -1).asDiagonal())}};
+    return d;
+  }
+  static std::array<Eigen::Vector2d, 3> pulls() {
+    const double side = 2.0 * std::sqrt(3.0);
+    return {Eigen::Vector2d(side, 2.0), Eigen::Vector2d(-side, 2.0), Eigen::Vector2d(0.0, -4.0)};
+  }
+  static double pull(const Eigen::Vector2d& k, const Eigen::VectorXd& z) { return std::exp(k.dot(z.head<2>())); }
+};
+
+/// Two equal linear oscillators, all of whose motions have one period, and a pendulum that swings faster.
+class LinearPairAndPendulum final : public test::PointSystem {
+ public:
+  LinearPairAndPendulum() : PointSystem(test::structure_of(6, true, true)) {}
+
+  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
+    Eigen::VectorXd f(6);
+    f << z.tail<3>(), -gradient_at(z).head<3>();
+    return f;
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(6, 6);
+    a.topRightCorner<3, 3>().setIdentity();
+    a.bottomLeftCorner<3, 3>() = -Eigen::Vector3d(1.0, 1.0, 2.0 * std::cos(z(2))).asDiagonal().toDenseMatrix();
+    return a;
+  }
+  [[nodiscard]] Eigen::VectorXd gradient_at(const Eigen::VectorXd& z) const override {
+    Eigen::VectorXd g = z;
+    g(2) = 2.0 * std::sin(z(2));
+    return g;
+  }
+  [[nodiscard]] double conserved(int, std::span<const double> z) const override {
+    return (z[0] * z[0] + z[1] * z[1] + z[3] * z[3] + z[4] * z[4] + z[5] * z[5]) / 2.0 - 2.0 * std::cos(z[2]);
+  }
+};
+
 SmallOscillations oscillations_of(const systems::System& system, const std::vector<double>& point,
                                   double amplitude = starts::SweepOptions{}.amplitude) {
   starts::SweepOptions options = starts::automatic_range(starts::linear_modes(system, point));
@@ -74,6 +142,31 @@ std::vector<SmallOscillation> slow_families(const SmallOscillations& all) {
 
 double cosine(const loop::Tangent& tangent, int harmonic, int coordinate) {
   return tangent.modes[static_cast<std::size_t>((2 * harmonic - 1) * 4 + coordinate)];
+}
+
+TEST(Resonance, AFamilyBesideAContinuumIsFound) {
+  const SmallOscillations all = oscillations_of(TodaRing());
+  ASSERT_EQ(all.families.size(), 1U) << "and its image, which runs the other way";
+  const loop::Tangent& direction = all.families.front().mode.direction;
+  const Eigen::Vector2d x(cosine(direction, 1, 0), direction.modes[8]);
+  const Eigen::Vector2d y(cosine(direction, 1, 1), direction.modes[9]);
+  EXPECT_NEAR(x.norm() / y.norm(), 1.0, 1e-3) << "a circle";
+  EXPECT_NEAR(x.dot(y) / x.squaredNorm(), 0.0, 1e-3);
+  EXPECT_LT(direction.period(), 0.0);
+  ASSERT_EQ(all.kernels.size(), 1U);
+  EXPECT_GT(all.kernels.front().not_isolated, 0);
+  ASSERT_EQ(all.kernels.front().families.size(), 1U);
+  EXPECT_EQ(all.kernels.front().families.front().images, 2);
+}
+
+TEST(Resonance, AContinuumLeavesTheOtherFamiliesOfItsEquilibrium) {
+  const SmallOscillations all = oscillations_of(LinearPairAndPendulum(), std::vector<double>(6, 0.0));
+  ASSERT_EQ(all.families.size(), 1U);
+  EXPECT_NEAR(all.families.front().mode.period, std::sqrt(2.0) * pi, 1e-12);
+  ASSERT_EQ(all.without_family.size(), 1U);
+  EXPECT_NEAR(all.without_family.front().period, 2.0 * pi, 1e-12);
+  ASSERT_EQ(all.kernels.size(), 1U);
+  EXPECT_GT(all.kernels.front().not_isolated, 0);
 }
 
 TEST(Resonance, TwoFamiliesOfOneToTwoLeaveAsTheNormalFormSays) {

@@ -81,8 +81,8 @@ class UndecidedError : public core::NumericalError {
 /// isotropy: generators of the crossing's orbit; base must have each of them, whatever its shift.
 /// kernel: null vectors with orthonormal modes; at an equilibrium each of one harmonic, both phases of each
 /// oscillation. Throws MisuseError for sizes that disagree or vectors that are not orthonormal, NumericalError where
-/// the symmetries do not map the kernel to itself isometrically, or where directions are not isolated (a continuum),
-/// UndecidedError where they are, but not to double precision.
+/// the symmetries do not map the kernel to itself isometrically, or where no direction is found or, at a crossing, all
+/// are a continuum, UndecidedError where they are isolated, but not to double precision.
 [[nodiscard]] Directions directions(const systems::System& system, const loop::Loop& base,
                                     const loop::Isotropy& isotropy, const std::vector<loop::Tangent>& kernel,
                                     const DirectionOptions& options = {});

@@ -175,6 +175,8 @@ std::string nothing_found_advice(const systems::System& system, const std::vecto
   if (!system.family_scalars().free.empty())
     return "no curve of equilibria has a Hopf point within limits.parameter: widen it, or give an orbit with "
            "starts.states";
+  if (any([](const SweepOutcome& found) { return !found.without_family.empty(); }))
+    return "which families leave the equilibria is not known: the notes and findings say why";
   if (!system.structure().conservative())
     return "the system conserves nothing: its families are curves in a parameter, with `continuation: {free: ...}`";
   return "none of the equilibria has small oscillations: let starts.fixed_points.grid lead to others, or give an orbit "

@@ -35,7 +35,7 @@ class EquilibriumFamilies final : public Check {
     if (archive::stability_width(header) == 0 || !evidence.system->structure().symplectic) return found;
     for (std::size_t n = 0; n < evidence.known.kernels.size(); ++n)
       for (const KernelRecord& kernel : evidence.known.kernels[n])
-        if (kernel.is_definite) judge(evidence, n, kernel, found);
+        if (kernel.is_definite && !kernel.places.empty()) judge(evidence, n, kernel, found);
     return found;
   }
 
