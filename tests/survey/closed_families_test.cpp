@@ -73,14 +73,14 @@ void expect_closed(const survey::Summary& summary, std::size_t families, double 
 }
 
 TEST(ClosedFamilies, OfOnePeriodAndOfMany) {
-  for (const char* step : {"adaptive", "0.01", "0.04", "0.08", "0.16"}) {
-    const std::vector<std::string> more{std::string("continuation.step=") + step};
+  for (const char* setting : {"step=adaptive", "step=0.01", "step=0.04", "step=0.08", "step=0.16", "tolerance=1e-11"}) {
+    const std::vector<std::string> more{std::string("continuation.") + setting};
     const survey::Summary circles = survey_of("lam: 0, a: 0.04", start("Isola", 0.2), 1.0, more);
     const survey::Summary bent =
         survey_of("lam: 0, a: 0.04, k: 0.3, c: 0.3", start("Isola", 0.2, 1.0, 0.3, turn / 1.06), 1.0, more);
     if (!core::Communicator().is_root()) continue;
-    expect_closed(circles, 1, 0.2, fmt::format("circles, step {}", step));
-    expect_closed(bent, 1, 0.2, fmt::format("bent, step {}", step));
+    expect_closed(circles, 1, 0.2, fmt::format("circles, {}", setting));
+    expect_closed(bent, 1, 0.2, fmt::format("bent, {}", setting));
   }
 }
 

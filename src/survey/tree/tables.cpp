@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <set>
+#include <map>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "arclengths.hpp"
 #include "end_text.hpp"
+#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
@@ -18,27 +18,37 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// A fold in energy shows twice: as an extremum and as a zero of the test function of q = 1. The first by key stays.
+/// A fold shows twice: as an extremum and as a zero of the test function of q = 1. The first by key stays.
 class FoldsOnce {
  public:
-  /// False for a fold where one of the same kind on the same family has been.
-  bool is_new(const LocateOutcome& crossing, double arclength) {
+  /// False for a fold at an orbit at which one of the same kind on the same family has been.
+  bool is_new(const LocateOutcome& crossing) {
     if (!is_fold(*crossing.kind)) return true;
-    std::set<double>& places = _places[{crossing.lineage.family, *crossing.kind}];
-    const auto is_same = [&](double place) {
-      return std::abs(place - arclength) < same_place * (crossing.arclength_unit + std::abs(arclength));
-    };
-    const auto above = places.lower_bound(arclength);
-    if (above != places.end() && is_same(*above)) return false;
-    if (above != places.begin() && is_same(*std::prev(above))) return false;
-    places.insert(arclength);
+    ByPeriod& folds = _folds[{crossing.lineage.family, *crossing.kind}];
+    const double beside = continuation::same_orbit_tolerance * (1.0 + crossing.period);
+    const auto from = folds.lower_bound(crossing.period - beside);
+    const auto to = folds.upper_bound(crossing.period + beside);
+    if (std::any_of(from, to, [&](const auto& fold) { return are_same(*fold.second, crossing); })) return false;
+    folds.emplace(crossing.period, &crossing);
     return true;
   }
 
  private:
-  /// Each of the two is located to far less than this in arclength, and other folds lie farther off.
-  static constexpr double same_place = 1e-4;
-  std::map<std::pair<std::string, archive::CrossingKind>, std::set<double>> _places;  // arclengths by family and kind
+  /// By the orbits' states in standard phase, as far as the places are known.
+  static bool are_same(const LocateOutcome& a, const LocateOutcome& b) {
+    double square = 0.0;
+    double size = 0.0;
+    for (std::size_t i = 0; i < a.state.size(); ++i) {
+      square += (a.state[i] - b.state[i]) * (a.state[i] - b.state[i]);
+      size += a.state[i] * a.state[i];
+    }
+    const double errors =
+        (std::fmax(0.0, a.place_error.arclength) + std::fmax(0.0, b.place_error.arclength)) / a.arclength_unit;
+    return std::sqrt(square) <= continuation::same_orbit_tolerance * (1.0 + std::sqrt(size)) + errors;
+  }
+
+  using ByPeriod = std::multimap<double, const LocateOutcome*>;
+  std::map<std::pair<std::string, archive::CrossingKind>, ByPeriod> _folds;  // by family and kind
 };
 
 archive::CrossingRecord row_of(const LocateOutcome& crossing, double arclength, const Units& units) {
@@ -122,7 +132,7 @@ std::map<std::string, int> add_crossings(const std::vector<Family>& families,
   FoldsOnce folds;
   for (const LocateOutcome* crossing : crossings) {
     const double arclength = arclengths.of(*crossing);
-    if (!folds.is_new(*crossing, arclength)) continue;
+    if (!folds.is_new(*crossing)) continue;
     rows[crossing->key] = static_cast<int>(tables.tables.crossings.size());
     tables.tables.crossings.push_back(row_of(*crossing, arclength, units));
   }
