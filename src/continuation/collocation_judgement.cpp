@@ -16,9 +16,6 @@ using equations::Collocation;
 
 namespace {
 
-/// The residual from which on a solver that came to rest has not solved its equations, in parts of what rounding
-/// leaves. Solved ones were seen at 0.25 to 2, those beside a narrow gap at 4 to 4000 (mu = 0.001, 13 turns).
-constexpr double at_rest = 3.0;
 /// The residual between the places where the equations ask, in parts of that at them, from which on it is truncation's,
 /// and not the solver's or rounding's, which are alike at both. Truncation was seen at 900.
 constexpr double shows_truncation = 10.0;
@@ -99,12 +96,6 @@ bool holds_to_rounding(const Collocation& equations, const std::vector<double>& 
   if (!(period > 0.0)) return false;
   const Collocation::Quality quality = equations.quality(values.data());
   return quality.asked < rounding_floor(equations, quality, period);
-}
-
-bool rests_aside(const Collocation& equations, const std::vector<double>& values) {
-  Eigen::VectorXd residual(equations.size());
-  equations.residual(values.data(), residual.data());
-  return residual.norm() > at_rest * equations.residual_rounding(values.data());
 }
 
 std::string not_finite_at(const Collocation& equations, const std::vector<double>& values,

@@ -30,10 +30,6 @@ void judge(const equations::Collocation& equations, const std::vector<double>& w
 /// Whether the equations hold to rounding where they ask.
 [[nodiscard]] bool holds_to_rounding(const equations::Collocation& equations, const std::vector<double>& values);
 
-/// Whether a solver that came to rest there did so where its equations do not hold: along some direction they are so
-/// flat that the box scheme's own error is all that is seen of it.
-[[nodiscard]] bool rests_aside(const equations::Collocation& equations, const std::vector<double>& values);
-
 /// The sentence that the loss has for a field that is not finite, there or at what was predicted; `otherwise` where it
 /// is.
 [[nodiscard]] std::string not_finite_at(const equations::Collocation& equations, const std::vector<double>& values,

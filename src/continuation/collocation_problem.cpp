@@ -294,7 +294,7 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
 /// rest.
 bool CollocationProblem::rests_aside(const Trial& trial) {
   if (!trial.stagnated || !trial.is_orbit || state().preconditioner == Preconditioner::exact) return false;
-  return continuation::rests_aside(equations(), trial.values);
+  return !equations().is_at_rounding(trial.values.data());
 }
 
 /// Anew by GMRES, and so the branch from here on. From the prediction: where the solver came to rest the equations may

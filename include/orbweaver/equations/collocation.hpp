@@ -80,8 +80,11 @@ class Collocation final : public PreconditionedEquations {
   /// further than it comes.
   [[nodiscard]] bool is_solved() const;
   /// What rounding leaves of the residual at `u`, near where the preconditioner was built, as a norm: that of the
-  /// values at the nodes, and of the states as the field multiplies it.
+  /// values at the nodes, and of the states, as sums of these, as the field multiplies it.
   [[nodiscard]] double residual_rounding(const double* u) const;
+  /// Whether that explains the residual: where not, a solver that came to rest at `u` did so beside the solution, along
+  /// some direction in which the equations are so flat that the box scheme's own error is all that is seen of it.
+  [[nodiscard]] bool is_at_rounding(const double* u) const;
   /// The derivative of `residual` where the preconditioner was built, applied to a perturbation of the point.
   void apply_jacobian(const double* v, double* r) const;
 

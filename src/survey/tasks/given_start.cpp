@@ -21,6 +21,7 @@
 #include "orbweaver/loop/symmetry/shift_search.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/starts/loop_guess.hpp"
+#include "orbweaver/starts/multiple_shooting.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "orbweaver/survey/tree/undeclared.hpp"
 
@@ -30,6 +31,8 @@ namespace {
 
 /// Of a trajectory's integrator: the orbit is corrected from it.
 constexpr double guess_tolerance = 1e-10;
+/// And of the one by which multiple shooting finds an orbit.
+constexpr double shooting_tolerance = 1e-12;
 /// Of an energy, in its scale: branches end on limits to rounding.
 constexpr double same_energy = 1e-9;
 /// Orbits on the way to the energy of a return: one that is further away along its family is another orbit. Not
@@ -73,6 +76,16 @@ void close_by_symmetry(const systems::Structure& structure, const GivenStart& gi
   }
 }
 
+starts::Integrator integrator_of(const systems::System& system, double tolerance) {
+  return {[&system, tolerance](const std::vector<double>& state, double time) {
+            return certificate::integrate(system, state, time, tolerance);
+          },
+          [&system, tolerance](const std::vector<double>& state, double time) {
+            return certificate::transitions(system, {state}, time, tolerance).front();
+          },
+          tolerance};
+}
+
 /// The part of a given start's trajectory that lies before its state.
 double time_before(const systems::System& system, const GivenStart& given) {
   return given.is_return() || system.structure().dissipative ? 0.0 : 0.5 * given.period;
@@ -84,9 +97,7 @@ double time_before(const systems::System& system, const GivenStart& given) {
 starts::GuessCurve trajectory_of(const systems::System& system, const std::vector<double>& point,
                                  const GivenStart& given) {
   const double before = time_before(system, given);
-  const starts::Advance advance = [&system](const std::vector<double>& state, double time) {
-    return certificate::integrate(system, state, time, guess_tolerance);
-  };
+  const starts::Advance advance = integrator_of(system, guess_tolerance).advance;
   const auto nodes_over = [&](double time) {
     return starts::trajectory_nodes(system, advance, point, time, given.period * given.order / loop::time_sample_count);
   };
@@ -100,12 +111,33 @@ starts::GuessCurve trajectory_of(const systems::System& system, const std::vecto
   return starts::curve_through(std::move(nodes));
 }
 
-/// The guess as a loop.
+/// The curve of a given start, and the longest step of its mesh.
+struct Given {
+  starts::GuessCurve curve;
+  double longest = 0.0;
+};
+Given curve_of(const systems::System& system, const SweepWork& work) {
+  const GivenStart& given = work.given.front();
+  const double longest = given.period * given.order / loop::time_sample_count;
+  if (given.guess.modes.empty()) return {trajectory_of(system, work.point, given), longest};
+  const auto state = [guess = given.guess](double time) { return loop::state_at(guess, time); };
+  return {starts::curve_of(system, state, given.period, longest), longest};
+}
+
+starts::ShotCurve shot_through(const systems::System& system, const Given& given) {
+  return starts::shot_through(system, integrator_of(system, shooting_tolerance), given.curve, given.longest);
+}
+
+/// The guess as a loop. Where times that are spaced evenly do not resolve it, it is the orbit that multiple shooting
+/// finds near it: to the harmonics of a loop an error is magnified by all that follows a close passage.
 loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
   const bool is_trajectory = given.guess.modes.empty();
   loop::Loop guess =
       is_trajectory ? starts::loop_through(system.structure(), trajectory_of(system, work.point, given)) : given.guess;
+  if (given.from != GivenStart::From::archive && !guess.time_map.is_identity())
+    if (const starts::ShotCurve shot = shot_through(system, curve_of(system, work)); shot.curve)
+      guess = starts::loop_through(system.structure(), *shot.curve);
   guess.parameters.clear();
   for (const std::string& name : system.family_scalars().free)
     guess.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
