@@ -27,6 +27,8 @@ using State = std::vector<double>;
 
 /// By how much the motion turns in a piece outside of close passages: errors grow by some e^4 there.
 constexpr double turn_a_piece = 4.0;
+/// Of the states, in parts of the integrator's: what a piece of several steps leaves.
+constexpr double of_integrator = 10.0;
 
 VectorXd as_vector(const State& z) { return Eigen::Map<const VectorXd>(z.data(), static_cast<Index>(z.size())); }
 std::size_t at(Index n) { return static_cast<std::size_t>(n); }
@@ -64,7 +66,7 @@ std::vector<double> pieces_of(const GuessCurve& curve) {
 class Pieces final : public equations::PreconditionedEquations {
  public:
   Pieces(const systems::System& system, const Integrator& integrator, const GuessCurve& curve)
-      : _system(system), _integrator(integrator), times(pieces_of(curve)), _d(system.dimension()) {
+      : times(pieces_of(curve)), _system(system), _integrator(integrator), _d(system.dimension()) {
     for (Index n = 0; n < count(); ++n) {
       const State state = curve.state(times[at(n)]);
       guess.insert(guess.end(), state.begin(), state.end());
@@ -72,7 +74,8 @@ class Pieces final : public equations::PreconditionedEquations {
     guess.push_back(1.0);
     _turns = as_vector(curve.state(curve.period)) - as_vector(curve.state(0.0));
     for (Index i = 0; i < _d; ++i)
-      _turns(i) = system.structure().is_angle(at(i)) ? numerics::two_pi * std::round(_turns(i) / numerics::two_pi) : 0.0;
+      _turns(i) =
+          system.structure().is_angle(at(i)) ? numerics::two_pi * std::round(_turns(i) / numerics::two_pi) : 0.0;
     _along = VectorXd::Zero(size());
     for (Index n = 0; n < count(); ++n) _along.segment(_d * n, _d) = slope(guess.data() + _d * n);
     _along.normalize();
@@ -121,6 +124,9 @@ class Pieces final : public equations::PreconditionedEquations {
     values = _factor.solve(values).eval();
   }
 
+  const std::vector<double> times;
+  State guess;
+
  private:
   [[nodiscard]] VectorXd slope(const double* state) const {
     VectorXd out(_d);
@@ -130,12 +136,6 @@ class Pieces final : public equations::PreconditionedEquations {
 
   const systems::System& _system;
   const Integrator& _integrator;
-
- public:
-  const std::vector<double> times;
-  State guess;
-
- private:
   Index _d;
   VectorXd _turns;  ///< of angles over the period
   VectorXd _along;
@@ -144,7 +144,7 @@ class Pieces final : public equations::PreconditionedEquations {
 
 /// The trajectories of the pieces, one behind the other.
 GuessCurve in_one(const systems::System& system, const Integrator& integrator, const Pieces& pieces, const double* u,
-                  double longest) {
+                  double period, double longest) {
   std::vector<TrajectoryNode> nodes;
   for (Index n = 0; n < pieces.count(); ++n) {
     std::vector<TrajectoryNode> piece =
@@ -154,6 +154,7 @@ GuessCurve in_one(const systems::System& system, const Integrator& integrator, c
     if (!nodes.empty()) nodes.pop_back();
     nodes.insert(nodes.end(), std::make_move_iterator(piece.begin()), std::make_move_iterator(piece.end()));
   }
+  nodes.back().time = pieces.stretch(u) * period;  // not by a sum, whose rounding would be the period's
   return curve_through(std::move(nodes));
 }
 
@@ -163,17 +164,20 @@ ShotCurve shot_through(const systems::System& system, const Integrator& integrat
                        double longest) {
   Pieces pieces(system, integrator, curve);
   std::vector<double> u = pieces.guess;
-  equations::approach(pieces, u, pieces.size() - 1, 1.0);
-  equations::AndersonSolver::Options options;
-  options.tolerance = 10 * integrator.tolerance;
-  const auto result = equations::AndersonSolver().solve(pieces, u, false, options);
+  ShotCurve out;
+  try {
+    equations::approach(pieces, u, pieces.size() - 1, 1.0);
+    equations::AndersonSolver::Options options;
+    options.tolerance = of_integrator * integrator.tolerance;
+    if (equations::AndersonSolver().solve(pieces, u, false, options).converged)
+      out.curve = in_one(system, integrator, pieces, u.data(), curve.period, longest);
+  } catch (const core::NumericalError&) {  // a piece cannot be followed: what it misses is not finite
+  }
   VectorXd missed(pieces.size());
   pieces.residual(u.data(), missed.data());
   Index worst = 0;
-  ShotCurve out;
   out.missed = missed.head(pieces.size() - 1).cwiseAbs().maxCoeff(&worst);
   out.missed_at = std::fmod(pieces.times[at(worst / system.dimension() + 1)], curve.period);
-  if (result.converged) out.curve = in_one(system, integrator, pieces, u.data(), longest);
   return out;
 }
 

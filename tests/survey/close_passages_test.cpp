@@ -42,19 +42,22 @@ TEST_P(ClosePassages, AreReachedFromPublishedStates) {
   for (const double period : atlas.column("period", "Close")) EXPECT_NEAR(period, GetParam().period, 1e-12);
 }
 
-// Ten digits (Li and Liao 2017), and a row good to three (Suvakov and Dmitrasinovic 2013).
+// Ten digits (Li and Liao 2017), and rows good to three and five (Suvakov and Dmitrasinovic 2013): the last one passes
+// at 0.012 in the coordinate r itself, of which rounding leaves what its mean has.
 INSTANTIATE_TEST_SUITE_P(Rows, ClosePassages,
                          testing::Values(Row{"ten", "2, 0, 0, 0, -0.6137868410, -0.2510131340", 6.2346748391},
-                                         Row{"three", "2, 0, 0, 0, -0.92889047, -0.79211995", 14.8939113}),
+                                         Row{"three", "2, 0, 0, 0, -0.92889047, -0.79211995", 14.8939113},
+                                         Row{"five", "2, 0, 0, 0, -0.16116, -1.17768", 21.2710}),
                          [](const auto& row) { return row.param.name; });
 
-TEST(ClosePassagesThatLeadToNoOrbit, AreToldWhereTheyAreFastest) {
+TEST(ClosePassagesThatLeadToNoOrbit, AreToldWhereTheyAreFastestAndWhatIsMissed) {
   const core::Communicator comm;
   const survey::Summary summary =
       test::run(comm, scene::parse(scene_of("2, 0, 0.3, 0.2, -0.31, -0.7", 3.1), "far.yaml"), "far_close");
   ASSERT_EQ(summary.failed_tasks.size(), 1U);
   EXPECT_THAT(summary.failed_tasks.front(), HasSubstr("the motion is fastest at t = "));
   EXPECT_THAT(summary.failed_tasks.front(), HasSubstr("r12 = "));
+  EXPECT_THAT(summary.failed_tasks.front(), HasSubstr("multiple shooting leaves its pieces open by "));
 }
 
 }  // namespace

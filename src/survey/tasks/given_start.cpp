@@ -124,24 +124,29 @@ Given curve_of(const systems::System& system, const SweepWork& work) {
   return {starts::curve_of(system, state, given.period, longest), longest};
 }
 
-starts::ShotCurve shot_through(const systems::System& system, const Given& given) {
-  return starts::shot_through(system, integrator_of(system, shooting_tolerance), given.curve, given.longest);
-}
-
-/// The guess as a loop. Where times that are spaced evenly do not resolve it, it is the orbit that multiple shooting
-/// finds near it: to the harmonics of a loop an error is magnified by all that follows a close passage.
-loop::Loop guess_of(const systems::System& system, const SweepWork& work) {
+/// The guess as a loop. Where times that are spaced evenly do not resolve a state's trajectory or a table, it is the
+/// orbit that multiple shooting finds near it: an error of the size of a close passage's own small time leads harmonics
+/// nowhere. Of returns there are many, most near no orbit; orbits of archives are corrected already.
+struct Guess {
+  loop::Loop loop;
+  std::optional<starts::ShotCurve> shot;
+};
+Guess guess_of(const systems::System& system, const SweepWork& work) {
   const GivenStart& given = work.given.front();
-  const bool is_trajectory = given.guess.modes.empty();
-  loop::Loop guess =
-      is_trajectory ? starts::loop_through(system.structure(), trajectory_of(system, work.point, given)) : given.guess;
-  if (given.from != GivenStart::From::archive && !guess.time_map.is_identity())
-    if (const starts::ShotCurve shot = shot_through(system, curve_of(system, work)); shot.curve)
-      guess = starts::loop_through(system.structure(), *shot.curve);
+  Guess out;
+  loop::Loop& guess = out.loop;
+  guess = given.guess.modes.empty() ? starts::loop_through(system.structure(), trajectory_of(system, work.point, given))
+                                    : given.guess;
+  const bool is_loose = given.from == GivenStart::From::state || given.from == GivenStart::From::loop;
+  if (is_loose && !guess.time_map.is_identity()) {
+    const Given from = curve_of(system, work);
+    out.shot = starts::shot_through(system, integrator_of(system, shooting_tolerance), from.curve, from.longest);
+    if (out.shot->curve) guess = starts::loop_through(system.structure(), *out.shot->curve);
+  }
   guess.parameters.clear();
   for (const std::string& name : system.family_scalars().free)
     guess.parameters.push_back(system.parameters().at(name) / system.parameter_scale(name));
-  return guess;
+  return out;
 }
 
 /// The orbit started where the first reversor that it has maps it to itself; as it is where it has none.
@@ -269,8 +274,7 @@ Correction return_at_energy(const std::shared_ptr<const systems::System>& system
 /// The orbit that Newton's method finds near the guess with its period; where it finds none, as beside an equilibrium,
 /// where all orbits of a family have nearly one period, with its energy.
 Correction corrected(const scene::Scene& scene, const std::shared_ptr<const systems::System>& system,
-                     const SweepWork& work, core::Team* team) {
-  const loop::Loop guess = guess_of(*system, work);
+                     const SweepWork& work, const loop::Loop& guess, core::Team* team) {
   continuation::Options options = branch_options(scene, team);
   const bool is_return = work.given.front().is_return();
   // A return's orbit is within the limits when it has the energy; a family that begins beyond them is left out.
@@ -316,19 +320,15 @@ std::string advice_for_closed(const systems::System& system, const std::vector<d
       directions, directions == 1 ? "" : "s");
 }
 
-/// Where along its guess the motion is fastest, as a text: there a correction is decided.
-std::string fastest_text(const systems::System& system, const SweepWork& work) {
-  const GivenStart& given = work.given.front();
+/// Where along its guess the motion is fastest, and what multiple shooting leaves open, as a text: there a correction
+/// is decided.
+std::string fastest_text(const systems::System& system, const SweepWork& work,
+                         const std::optional<starts::ShotCurve>& shot) {
   const double unit = system.scales().time;
   try {
-    const loop::Loop& guess = given.guess;
-    const starts::GuessCurve curve = guess.modes.empty()
-                                         ? trajectory_of(system, work.point, given)
-                                         : starts::curve_of(
-                                               system, [&](double time) { return loop::state_at(guess, time); },
-                                               given.period, given.period * given.order / loop::time_sample_count);
+    const starts::GuessCurve curve = curve_of(system, work).curve;
     const starts::GuessCurve::Fastest fastest = curve.fastest();
-    const double begin = given.guess.modes.empty() ? time_before(system, given) : 0.0;
+    const double begin = work.given.front().guess.modes.empty() ? time_before(system, work.given.front()) : 0.0;
     std::string text = fmt::format(
         "; along its guess, of period {:.9g}, the motion is fastest at t = {:.6g}, where it turns in a time of {:.2g}",
         curve.period * unit, (fastest.time - begin) * unit, unit / fastest.rate);
@@ -336,14 +336,17 @@ std::string fastest_text(const systems::System& system, const SweepWork& work) {
     for (std::size_t k = 0; k < guards.size(); ++k)
       text += fmt::format("{}{} = {:.3g}", k == 0 ? " with " : ", ", guards[k].name,
                           system.guard(static_cast<int>(k), curve.state(fastest.time)));
-    return text;
+    if (!shot) return text;
+    if (!std::isfinite(shot->missed)) return text + "; multiple shooting cannot follow it";
+    return text + fmt::format("; multiple shooting leaves its pieces open by {:.2g}, most at t = {:.6g}", shot->missed,
+                              (shot->missed_at - begin) * unit);
   } catch (const core::NumericalError& error) {
     return fmt::format("; its guess: {}", error.what());
   }
 }
 
 /// What is to be done where a given state leads to no orbit; empty for other starts.
-std::string advice_for(const systems::System& system, const SweepWork& work) {
+std::string advice_for(const systems::System& system, const SweepWork& work, bool is_shot) {
   const GivenStart& given = work.given.front();
   if (given.from != GivenStart::From::state) return "";
   const systems::Structure& structure = system.structure();
@@ -359,6 +362,11 @@ std::string advice_for(const systems::System& system, const SweepWork& work) {
     if (!closed.empty()) return text + closed;
   } catch (const core::NumericalError&) {  // it does not get there
   }
+  if (is_shot)
+    return text +
+           "; there is an orbit near the state, and what fails is to follow its fastest motion with harmonics: begin "
+           "at "
+           "parameters at which it is slower (docs/starts.md, \"How good a state must be\")";
   if (structure.driven) {
     std::vector<double> field(work.point.size());
     system.field(1, work.point.data(), field.data());
@@ -385,10 +393,12 @@ SweepOutcome given_start(const scene::Scene& scene, const std::shared_ptr<const 
   SweepOutcome outcome;
   outcome.index = work.index;
   outcome.point = work.point;
-  const Correction correction = corrected(scene, system, work, team);
+  const Guess guess = guess_of(*system, work);
+  const Correction correction = corrected(scene, system, work, guess.loop, team);
   if (!correction.orbit) {
     if (!work.given.front().is_return())
-      throw core::NumericalError(correction.why + fastest_text(*system, work) + advice_for(*system, work));
+      throw core::NumericalError(correction.why + fastest_text(*system, work, guess.shot) +
+                                 advice_for(*system, work, guess.shot && guess.shot->curve));
     outcome.rejected.push_back(correction.why);
     return outcome;
   }
