@@ -19,7 +19,7 @@ survey::Summary sample_summary() {
       {"0000.0000", "In-Phase", "S@1/2 R@0", 35, 8.2094, 30.0, -2.9999, 2.99906644, "period limit (T = 30)", false},
       {"0001.0000", "A name of great length", "", 2, 5.25, 5.5, 1.0, 1.25, "failure (a NaN at node 3)", true}};
   summary.remarks = {"no small oscillations around the top"};
-  summary.failed_tasks = {"0001.0000 (A name of great length): failure (a NaN at node 3)"};
+  summary.failed_tasks = {"A name of great length: failure (a NaN at node 3)"};
   summary.failures = 1;
   summary.orbits = 37;
   summary.crossings = 5;
@@ -38,7 +38,7 @@ TEST(SummaryText, SaysEverythingThatItKnows) {
   EXPECT_THAT(
       text,
       AllOf(HasSubstr("note: no small oscillations around the top\n"),
-            HasSubstr("failed: 0001.0000 (A name of great length): failure (a NaN at node 3)\n"),
+            HasSubstr("failed: A name of great length: failure (a NaN at node 3)\n"),
             HasSubstr("2 families, 5 crossings, 37 orbits, 1 failed, 12.35 s; peak memory per rank: 48 417 MiB\n"),
             HasSubstr("archive: some/folder/atlas.h5\n")));
 }

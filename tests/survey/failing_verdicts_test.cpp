@@ -187,7 +187,7 @@ TEST_F(FailingVerdicts, ACurveOfCrossingsWithoutAStepIsAFailure) {
   EXPECT_EQ(drivers::status_of(summary), core::ExitStatus::goal_missed);
   if (!world.is_root()) return;
   EXPECT_THAT(summary.failed_tasks,
-              ElementsAre(AllOf(StartsWith("locus 0000.0000/000.q4.j1:0: "), HasSubstr("at the start"))));
+              ElementsAre(AllOf(StartsWith("In-Phase: locus from period-doubling T 8."), HasSubstr("at the start"))));
   const test::Atlas atlas(summary.atlas);
   ASSERT_EQ(atlas.loci().rows(), 1U) << "the crossing itself";
   EXPECT_THAT(atlas.loci().texts("note").front(), HasSubstr("failure ("));

@@ -116,14 +116,14 @@ TEST_F(Evidence, EventsThatRoundingHidesAreTold) {
   EXPECT_TRUE(found.failures.empty());
   ASSERT_EQ(found.undecided.size(), 1U);
   EXPECT_EQ(found.undecided[0].family, "0000.0000");
-  EXPECT_EQ(found.undecided[0].reason, "locate " + p.key + ": no zero");
+  EXPECT_EQ(found.undecided[0].reason, "event 1: no zero");
 }
 
 TEST_F(Evidence, FailedLocationsBelongToTheirFamilies) {
   const TreeEvidence found = evidence({base(), not_located(p, "no root")});
   ASSERT_EQ(found.failures.size(), 1U);
   EXPECT_EQ(found.failures[0].family, "0000.0000");
-  EXPECT_EQ(found.failures[0].reason, "locate " + p.key + ": no root");
+  EXPECT_EQ(found.failures[0].reason, "event 1: no root");
 }
 
 TEST_F(Evidence, WhatABranchHasPassedAndNotFoundIsUndecided) {

@@ -69,7 +69,7 @@ endforeach()
 
 # Not a number, on the rank count that CMakeLists.txt leaves out.
 set(folder "${runs}/system.overflow.ranks2/out")
-system_test(overflow.ranks2 2 1 "OUT=failed: sweep.0000: | is not finite|archive: " "FRESH=${folder}" "HAS=${folder}/atlas.h5"
+system_test(overflow.ranks2 2 1 "OUT=failed: Equilibrium 1: | is not finite|archive: " "FRESH=${folder}" "HAS=${folder}/atlas.h5"
   survey "${scene}" -o out --set system.parameters.g=1e300)
 
 # Ten times the orbits, no more memory: whoever kept the 34 MB of rows would need that much more.

@@ -40,6 +40,16 @@ void add_unfinished(const std::vector<queue::Task>& tasks, double unit, FamilyTr
   }
 }
 
+/// What a task was about, by the names of families: one that was not begun has none, but where it is born.
+std::string unfinished_text(const queue::Task& task, const std::map<std::string, std::string>& names) {
+  std::string key = place_of(task.key);
+  const auto name = [&] { return names.find(key.substr(0, key.find_last_not_of("+-") + 1)); };
+  const bool is_family = name() != names.end();
+  while (name() == names.end() && key.find('/') != std::string::npos) key.erase(key.rfind('/'));
+  if (name() == names.end()) return task.key;
+  return is_family ? name()->second : fmt::format("what lies on {} or is born there ({})", name()->second, task.key);
+}
+
 }  // namespace
 
 archive::Header header_of(const scene::Scene& scene, const systems::System& system) {
@@ -142,7 +152,8 @@ void write_archive(const core::Communicator& comm, const scene::Scene& scene,
     known.failures.assign(summary.failed_tasks.begin() + static_cast<std::ptrdiff_t>(told), summary.failed_tasks.end());
     known.stopped_early = summary.stopped_early;
     known.time_unit = system->scales().time;
-    for (const queue::Task& task : checkpoint.unfinished) known.interrupted.push_back(task.key);
+    for (const queue::Task& task : checkpoint.unfinished)
+      known.interrupted.push_back(unfinished_text(task, found.names));
     for (const auto& [key, ended] : sweeps) {
       SweepWork work = unpack_sweep_work(ended.first.payload);
       if (!work.given.empty()) break;  // behind the equilibria

@@ -459,7 +459,7 @@ void gather_failed_sweeps(const systems::System& system, const SweepsEnded& swee
       record.end_reason = limited(failure_text(fmt::format("{}: {}", given.told, outcome.reason)));
     }
     summary.families.push_back({record.key, record.name, "", 0, 0.0, 0.0, 0.0, 0.0, record.end_reason, true});
-    summary.failed_tasks.push_back(fmt::format("{}: {}", key, outcome.reason));
+    summary.failed_tasks.push_back(fmt::format("{}: {}", record.name, outcome.reason));
     tables.families.push_back(std::move(record));
   }
 }

@@ -79,4 +79,10 @@ void name_families(std::vector<Family>& families, const Crossings& crossings,
   }
 }
 
+std::map<std::string, std::string> names_by_key(const std::vector<Family>& families) {
+  std::map<std::string, std::string> names;
+  for (const Family& family : families) names[family.key] = family.name;
+  return names;
+}
+
 }  // namespace orbweaver::survey

@@ -15,6 +15,9 @@ namespace orbweaver::survey {
 void name_families(std::vector<Family>& families, const Crossings& crossings,
                    const std::map<std::string, std::string>& letters);
 
+/// What families are called wherever a text speaks of them, by key.
+[[nodiscard]] std::map<std::string, std::string> names_by_key(const std::vector<Family>& families);
+
 /// a, b, ..., z, aa, ab, ...: of the n-th (from 0) of several families at one place.
 [[nodiscard]] std::string twin_letters(std::size_t n);
 

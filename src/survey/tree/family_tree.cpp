@@ -43,18 +43,15 @@ std::vector<Family> families_of(const std::vector<FamilySide>& branches) {
 }
 
 /// Which given orbits lie on which families, and where: of each the first branch that has passed it.
-std::vector<std::string> passed_texts(const std::vector<FamilySide>& kept, const std::vector<Family>& families,
-                                      const Units& units) {
-  std::map<std::string, std::string> names;
-  for (const Family& family : families) names[family.key] = family.name;
+std::vector<std::string> passed_texts(const std::vector<FamilySide>& kept,
+                                      const std::map<std::string, std::string>& names, const Units& units) {
   std::map<std::string, std::string> texts;  // by the key of the family that would begin there
   for (const FamilySide branch : kept) {
     if (!branch->second.outcome) continue;
     for (const PassedStart& start : branch->second.outcome->passed) {
-      texts.try_emplace(start.family,
-                        fmt::format("{}: {} lies on {}, at T = {:.9g}{}, and is no family of its own", start.told,
-                                    start.name, names.at(branch->second.lineage.family), start.period,
-                                    units.level_text(start.level)));
+      texts.try_emplace(start.family, fmt::format("{}: {} lies on {}, at T = {:.9g}{}, and is no family of its own",
+                                                  start.told, start.name, names.at(branch->second.lineage.family),
+                                                  start.period, units.level_text(start.level)));
     }
   }
   std::vector<std::string> out;
@@ -241,11 +238,11 @@ FamilyTree::Result FamilyTree::resolve() const {
     if (!kept_families.contains(branch.lineage.family)) left_out.insert(branch.lineage.family);
   result.tables.left_out_keys.assign(left_out.begin(), left_out.end());
 
-  for (const auto& [key, reason] : _failures)
-    if (on_kept(key)) result.failures.push_back(fmt::format("locate {}: {}", key, reason));
-  for (const auto& [key, reason] : _locus_failures)
-    if (on_kept(key)) result.failures.push_back(fmt::format("locus {}: {}", key, reason));
-  for (std::string& text : passed_texts(kept, families, _units)) result.remarks.push_back(std::move(text));
+  const std::map<std::string, std::string> names = names_by_key(families);
+  for (const auto* failures : {&result.evidence.failures, &result.evidence.failed_loci})
+    for (const FailureEvidence& failure : *failures)
+      result.failures.push_back(fmt::format("{}: {}", names.at(failure.family), failure.reason));
+  for (std::string& text : passed_texts(kept, names, _units)) result.remarks.push_back(std::move(text));
   const auto beyond = std::count_if(crossings.begin(), crossings.end(), [this](const LocateOutcome* crossing) {
     return crossing->multiplicity * crossing->period > _scene.limits.period;
   });
@@ -255,13 +252,14 @@ FamilyTree::Result FamilyTree::resolve() const {
   for (const FamilySide branch : kept)
     if (branch->second.outcome)
       for (const std::string& remark : branch->second.outcome->remarks)
-        result.remarks.push_back(fmt::format("{}: {}", branch->first, remark));
+        result.remarks.push_back(fmt::format("{}: {}", names.at(branch->second.lineage.family), remark));
   for (const std::string& key : _pruning.disputed())
     if (kept_keys.contains(key))
       result.remarks.push_back(fmt::format(
           "{}: another branch arrives where this one starts, yet it is kept: arrivals contradict each other "
           "about which branches are the same, so a curve may be recorded twice",
-          key));
+          names.at(_branches.at(key).lineage.family)));
+  result.names = names;
   return result;
 }
 

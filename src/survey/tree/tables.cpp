@@ -9,6 +9,7 @@
 
 #include "arclengths.hpp"
 #include "end_text.hpp"
+#include "family_names.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
@@ -159,8 +160,7 @@ void add_loci(const std::map<std::string, LocusOutcome>& loci, const Crossings& 
 void add_families(const std::vector<Family>& families, const Crossings& crossings,
                   const std::map<std::string, int>& crossing_rows, const Units& units,
                   const std::function<const Meeting*(const std::string&)>& arrival, TreeTables& tables) {
-  std::map<std::string, std::string> names;
-  for (const Family& family : families) names[family.key] = family.name;
+  const std::map<std::string, std::string> names = names_by_key(families);
   for (const Family& family : families) {
     archive::FamilyRecord record;
     FamilySummary summary;
@@ -190,7 +190,6 @@ void add_families(const std::vector<Family>& families, const Crossings& crossing
       }
       record.end_reason = record.end_reason.empty() ? reason : both_ends_text(record.end_reason, reason);
       summary.failed = summary.failed || side.failed;
-      if (side.failed) tables.failures.push_back(fmt::format("{} ({}): {}", family.key, family.name, side.reason));
       if (side.outcome && side.outcome->orbits > 0) add_orbits(*side.outcome, summary);
     }
     if (family.sides.size() == 1) {  // of a family with two sides the other one may have been run as well

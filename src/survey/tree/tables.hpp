@@ -19,8 +19,9 @@ namespace orbweaver::survey {
 struct TreeTables {
   archive::Records tables;              ///< families and crossings, and what of the rows does not belong to them
   std::vector<FamilySummary> families;  ///< parents before children
-  std::vector<std::string> failures;    ///< key and reason
+  std::vector<std::string> failures;    ///< name and reason
   std::vector<std::string> remarks;
+  std::map<std::string, std::string> names{};  ///< of families by key
   TreeEvidence evidence;  ///< for the witness
 };
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "arrivals.hpp"
+#include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "tasks/payload/keys.hpp"
 
 namespace orbweaver::survey {
@@ -36,9 +37,9 @@ class Gatherer {
       for (const std::string& passed : branch->second.outcome->unlocated)
         evidence.undecided.push_back({branch->second.lineage.family, passed});
     }
-    add_tasks("locate", _tree.failed_locations, evidence.failures);
-    add_tasks("locus", _tree.failed_loci, evidence.failed_loci);
-    add_tasks("locate", _tree.undecided_events, evidence.undecided);
+    add_tasks("", _tree.failed_locations, evidence.failures);
+    add_tasks("locus from ", _tree.failed_loci, evidence.failed_loci);
+    add_tasks("", _tree.undecided_events, evidence.undecided);
     for (const std::string& key : _tree.pruning.disputed())
       if (_kept.contains(key)) evidence.disputed.push_back(_tree.branches.at(key).lineage.family);
     return evidence;
@@ -49,7 +50,17 @@ class Gatherer {
                  std::vector<FailureEvidence>& to) const {
     for (const auto& [key, reason] : reasons)
       if (_kept.contains(branch_of(key)))
-        to.push_back({_tree.branches.at(branch_of(key)).lineage.family, fmt::format("{} {}: {}", kind, key, reason)});
+        to.push_back({_tree.branches.at(branch_of(key)).lineage.family,
+                      fmt::format("{}{}: {}", kind, event_text(key.substr(0, key.find(':'))), reason)});
+  }
+
+  /// "period-doubling T 8.44293", or "event 3" of one that was not located: on its family, whose name stands before it.
+  [[nodiscard]] std::string event_text(const std::string& key) const {
+    const auto crossing = _tree.crossings.find(key);
+    if (crossing == _tree.crossings.end() || !crossing->second.kind)
+      return fmt::format("event {}", event_number(key, branch_of(key)) + 1);
+    return fmt::format("{} T {:.6g}", archive::name_of(*crossing->second.kind),
+                       crossing->second.period * _tree.units.time);
   }
 
   [[nodiscard]] DirectionFate fate_of(const LocateOutcome& crossing, const LeavingRecord& leaving, int side) const {
