@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -14,6 +17,7 @@
 #include "failure.hpp"
 #include "orbweaver/core/address_space.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/terminal.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/scene/in_scales.hpp"
 #include "orbweaver/starts/fixed_points.hpp"
@@ -434,19 +438,43 @@ void print_cost(const survey::ExpectedWork& work) {
                                                         bytes_text(space.addresses), bytes_text(space.data))}});
 }
 
+/// Says what is worked at, which takes seconds where there are many coordinates: on a terminal that redraws only, until
+/// the next is said or all is done.
+class AtWork {
+ public:
+  AtWork() = default;
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork() { say(""); }
+
+  void say(const char* work) const {
+    if (!_redraws) return;
+    std::fprintf(stderr, "\r\x1b[K%s", work);
+    std::fflush(stderr);
+  }
+
+ private:
+  bool _redraws = core::terminal_of(STDERR_FILENO).redraws;
+};
+
 int check(const SceneOptions& options, const Invocation& invocation) {
   if (!invocation.petsc_options.empty())
     throw core::InputError(
         fmt::format("check: expected no PETSc options, got `{}`; it follows no family, so drop `--` and what follows",
                     fmt::join(invocation.petsc_options, " ")));
   const scene::Scene scene = options.load();
+  const AtWork at_work;
+  at_work.say("checking what the system says of itself ...");
   const auto bound = scene::bound_system(scene.system);
   const systems::System& system = *bound;
   const survey::ExpectedWork work = survey::expected_work(scene, system);
   survey::require_memory(work);
+  at_work.say("looking for the scales of the coordinates ...");
   const survey::ScaledScene scaled(scene, bound);
+  at_work.say("looking for equilibria, their oscillations and symmetries ...");
   const survey::ExpectedStarts expected = survey::expected_starts(scaled.scene(), *scaled.system());
   const std::vector<std::vector<double>> points = resting_points(scene, system);
+  at_work.say("");
   fmt::print("{}: a valid scene, \"{}\"\n", core::printable(options.file.string()), scene.name);
   print_system(scene, system, scaled.system()->scales());
   print_simulated(scene, system, points, expected.undeclared);

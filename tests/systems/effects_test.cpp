@@ -1,7 +1,9 @@
 // Every combination of effects that is compiled against a Lagrangian written anew, and what each does to the structure.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +13,7 @@
 #include "orbweaver/systems/field_cost.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "support/delegating_system.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems::effects_test {
@@ -400,6 +403,24 @@ TEST(FieldCost, IsATime) {
   EXPECT_GT(cost.field, 0.1);
   EXPECT_GT(cost.field_and_jacobian, cost.field);
   EXPECT_LT(cost.field_and_jacobian, 1e5);
+}
+
+/// Takes a millisecond for its field, as systems of many coordinates do.
+class Slow final : public test::DelegatingSystem {
+ public:
+  using DelegatingSystem::DelegatingSystem;
+  void field(std::size_t nodes, const double* z, double* f) const override {
+    ++calls;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    DelegatingSystem::field(nodes, z, f);
+  }
+  mutable int calls = 0;
+};
+
+TEST(FieldCost, OfASlowFieldIsToldWithoutALongWait) {
+  const Slow slow(make_system("double_pendulum"));
+  EXPECT_GT(field_cost(slow, {0.0, 0.0, 0.0, 0.0}).field, 1e3);
+  EXPECT_LT(slow.calls, 100);
 }
 
 }  // namespace
