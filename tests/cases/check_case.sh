@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # check_case.sh PROGRAM FOLDER TABLE [--all]: surveys a problem that users brought, and holds it against what is right of it.
 # FOLDER has scenes, plugins' sources (NAME.cpp makes ./NAME.so) and TABLE, whose lines are
+#   refuses FILE TEXT     a plugin's source that has to be refused with status 2, and what is said of it
 #   scene FILE            the scene that the lines below are about
 #   status N              with which its survey has to end (default 0)
 #   set KEY=VALUE         a setting of all its runs
@@ -131,13 +132,20 @@ begin_checks() {
 cp "$folder"/* .
 for source in *.cpp; do
   [[ -e "$source" ]] || continue
-  "$program" build-system "$source" -o "${source%.cpp}.so" >build.txt 2>&1 || { cat build.txt; exit 1; }
+  refusal=$(sed -n "s/^refuses $source //p" "$table")
+  "$program" build-system "$source" -o "${source%.cpp}.so" >build.txt 2>&1
+  status=$?
+  if [[ -z "$refusal" ]]; then
+    ((status == 0)) || { cat build.txt; exit 1; }
+  else
+    ((status == 2)) && grep -qF -- "$refusal" build.txt || { scene=$source fault "not refused so: $refusal"; cat build.txt; }
+  fi
 done
 
 scene='' surveyed='' plugin=''
 while read -r word rest; do
   case "$word" in
-    '' | \#*) ;;
+    '' | \#* | refuses) ;;
     scene)
       end_scene
       scene=$rest surveyed='' wanted_status=0 always=() variations=() plugin=''
