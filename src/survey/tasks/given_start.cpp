@@ -364,9 +364,8 @@ std::string advice_for(const systems::System& system, const SweepWork& work, boo
   }
   if (is_shot)
     return text +
-           "; there is an orbit near the state, and what fails is to follow its fastest motion with harmonics: begin "
-           "at "
-           "parameters at which it is slower (docs/starts.md, \"How good a state must be\")";
+           "; multiple shooting finds an orbit near the state, which the loop's equations do not confirm: begin at "
+           "parameters at which its fastest motion is slower (docs/starts.md, \"How good a state must be\")";
   if (structure.driven) {
     std::vector<double> field(work.point.size());
     system.field(1, work.point.data(), field.data());
