@@ -10,7 +10,6 @@
 #include "arclengths.hpp"
 #include "end_text.hpp"
 #include "family_names.hpp"
-#include "orbweaver/continuation/orbit.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
 #include "orbweaver/survey/tree/family_end.hpp"
 #include "orbweaver/survey/tree/naming.hpp"
@@ -22,34 +21,29 @@ namespace {
 /// A fold shows twice: as an extremum and as a zero of the test function of q = 1. The first by key stays.
 class FoldsOnce {
  public:
-  /// False for a fold at an orbit at which one of the same kind on the same family has been.
-  bool is_new(const LocateOutcome& crossing) {
+  /// False for a fold that has been: of the same kind on the same family with the same value, no farther along it than
+  /// the orbits between which both were located, on curves through other orbits.
+  bool is_new(const LocateOutcome& crossing, double arclength) {
     if (!is_fold(*crossing.kind)) return true;
-    ByPeriod& folds = _folds[{crossing.lineage.family, *crossing.kind}];
-    const double beside = continuation::same_orbit_tolerance * (1.0 + crossing.period);
-    const auto from = folds.lower_bound(crossing.period - beside);
-    const auto to = folds.upper_bound(crossing.period + beside);
-    if (std::any_of(from, to, [&](const auto& fold) { return are_same(*fold.second, crossing); })) return false;
-    folds.emplace(crossing.period, &crossing);
-    return true;
+    const double value = *crossing.kind == archive::CrossingKind::fold_period ? crossing.period : crossing.level();
+    std::multimap<double, Place>& folds = _folds[{crossing.lineage.family, *crossing.kind}];
+    const double beside = same_value * (1.0 + std::abs(value));
+    const bool is_known =
+        std::any_of(folds.lower_bound(value - beside), folds.upper_bound(value + beside), [&](const auto& fold) {
+          return std::abs(fold.second.arclength - arclength) <= std::max(fold.second.within, crossing.within);
+        });
+    if (!is_known) folds.emplace(value, Place{arclength, crossing.within});
+    return !is_known;
   }
 
  private:
-  /// By the orbits' states in standard phase, as far as the places are known.
-  static bool are_same(const LocateOutcome& a, const LocateOutcome& b) {
-    double square = 0.0;
-    double size = 0.0;
-    for (std::size_t i = 0; i < a.state.size(); ++i) {
-      square += (a.state[i] - b.state[i]) * (a.state[i] - b.state[i]);
-      size += a.state[i] * a.state[i];
-    }
-    const double errors =
-        (std::fmax(0.0, a.place_error.arclength) + std::fmax(0.0, b.place_error.arclength)) / a.arclength_unit;
-    return std::sqrt(square) <= continuation::same_orbit_tolerance * (1.0 + std::sqrt(size)) + errors;
-  }
-
-  using ByPeriod = std::multimap<double, const LocateOutcome*>;
-  std::map<std::pair<std::string, archive::CrossingKind>, ByPeriod> _folds;  // by family and kind
+  struct Place {
+    double arclength;
+    double within;
+  };
+  /// The values at a fold are known to the square of its place, which is located to 1e-10, or is open by 1e-5 at most.
+  static constexpr double same_value = 1e-9;
+  std::map<std::pair<std::string, archive::CrossingKind>, std::multimap<double, Place>> _folds;  // by family and kind
 };
 
 archive::CrossingRecord row_of(const LocateOutcome& crossing, double arclength, const Units& units) {
@@ -133,7 +127,7 @@ std::map<std::string, int> add_crossings(const std::vector<Family>& families,
   FoldsOnce folds;
   for (const LocateOutcome* crossing : crossings) {
     const double arclength = arclengths.of(*crossing);
-    if (!folds.is_new(*crossing)) continue;
+    if (!folds.is_new(*crossing, arclength)) continue;
     rows[crossing->key] = static_cast<int>(tables.tables.crossings.size());
     tables.tables.crossings.push_back(row_of(*crossing, arclength, units));
   }

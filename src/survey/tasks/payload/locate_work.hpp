@@ -65,8 +65,8 @@ struct LocateOutcome {
   static constexpr const char* payload_name = "locate outcome";
   std::string key;
   Lineage lineage;
-  double arclength = 0.0;       ///< on its branch (signed_arclength), in the units of the scene
-  double arclength_unit = 1.0;  ///< how long a length of 1 in the survey's scales is there in it
+  double arclength = 0.0;  ///< on its branch (signed_arclength), in the units of the scene
+  double within = 0.0;     ///< how long the part of the branch is in which it was looked for
   double period = 0.0;
   double energy = 0.0;
   double parameter = std::numeric_limits<double>::quiet_NaN();  ///< that moves
@@ -88,10 +88,10 @@ struct LocateOutcome {
   std::string remark;
   int limited_by = 0;  ///< Limit: with wider ones more would have been looked for
 
-  static constexpr int wire_version = 4;
+  static constexpr int wire_version = 5;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, key, lineage, arclength, arclength_unit, period, energy, parameter, kind,
+    core::serialize_members(archive, key, lineage, arclength, within, period, energy, parameter, kind,
                             multiplicity, kernel_dimension, residual, place_error, kernel_singular_value,
                             next_singular_value, test_value, state, q, j, fundamental_order, leaving, undecided, remark,
                             limited_by);
