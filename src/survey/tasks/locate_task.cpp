@@ -200,7 +200,7 @@ class Location {
     survey::describe(*_system, _event, crossing, family.isotropy(), _outcome);
     const double position = crossing.point.position;
     _outcome.arclength = signed_arclength(_work.lineage, _work.before_first, family.arclength_at(position));
-    _outcome.within = std::abs(family.arclength_at(_work.to) - family.arclength_at(_work.from));
+    _outcome.within = (_work.to - _work.from) * family.arclength_unit_at(position);
   }
 
   void leave(const bifurcation::Crossing& crossing, continuation::FamilyCurve& family) {
