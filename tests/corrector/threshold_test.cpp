@@ -32,7 +32,7 @@ TEST(AcceptanceThreshold, ScalesWithTheSpeedUpToOne) {
   EXPECT_EQ(threshold_of(*system, fast, 1e-7), 1e-7);
 }
 
-// Around (0, pi) the second angle carries rounding of eps pi: the residual cannot go below what the field makes of it.
+// Around (0, pi) the second angle carries rounding of eps pi: the residual cannot go below what that makes of the field.
 TEST(AcceptanceThreshold, NeverBelowTheRoundingOfTheResidual) {
   const auto system = systems::make_system("double_pendulum");
   const double point[4] = {0.0, std::numbers::pi, 0.0, 0.0};

@@ -67,8 +67,8 @@ struct Result {
 /// factor of ten or so; a loss that is all truncation is at about 1 whatever the share. Not measured.
 inline constexpr double least_explained = 1e-2;
 
-/// What the rounding of a mean state z is in the residual, through the field's Jacobian A: 4 eps `felt`, which is rms
-/// |A| |z|, entry by entry: a coordinate that decays fast may be small, and where it rests is known as well as
+/// What the rounding of a mean state z is in the residual, through the field's Jacobian A: 4 eps `felt`, the latter being
+/// rms |A| |z|, entry by entry: a coordinate that decays fast may be small, and where it rests is known as well as
 /// itself. It matters for small amplitudes around a point away from 0.
 [[nodiscard]] double state_rounding(double felt);
 
