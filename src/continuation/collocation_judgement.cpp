@@ -43,15 +43,18 @@ void judge(const Collocation& equations, const std::vector<double>& winding, con
   trial.asked_rms = quality.asked;
   trial.amplitude = quality.amplitude;
   trial.size = extent_of(winding, quality.size);
-  const double felt = quality.felt_centre;
+  double centre = 0.0;
+  for (const double c : equations.centre()) centre += c * c;
+  const double size = std::sqrt(centre);
+  const double jacobian = equations.field_jacobian_rms();
   const double tolerance = options.corrector.tolerance;
-  trial.threshold = corrector::acceptance_threshold(tolerance, quality.speed_rms, felt);
-  trial.tolerance_met = corrector::tolerance_met(tolerance, trial.loss_rms, quality.speed_rms, felt);
+  trial.threshold = corrector::acceptance_threshold(tolerance, quality.speed_rms, size, jacobian);
+  trial.tolerance_met = corrector::tolerance_met(tolerance, trial.loss_rms, quality.speed_rms, size, jacobian);
   const double floor = rounding_floor(equations, quality, period);
   trial.unsolved = quality.asked > std::max(trial.threshold, floor) && equations.has_cells_to_fit();
   trial.to_rounding = quality.unasked < floor;
   trial.threshold_of_the_way =
-      corrector::acceptance_threshold(std::min(tolerance, of_the_way), quality.speed_rms, felt);
+      corrector::acceptance_threshold(std::min(tolerance, of_the_way), quality.speed_rms, size, jacobian);
   trial.is_beside_the_way = tolerance > of_the_way && quality.asked > std::max(trial.threshold_of_the_way, floor);
   if (!(period > 0.0)) {
     trial.converged = false;
@@ -67,10 +70,10 @@ void judge(const Collocation& equations, const std::vector<double>& winding, con
     trial.truncated = quality.unasked > shows_truncation * quality.asked;
     trial.reason = fmt::format("sqrt(loss) = {:.3g} falls no further, wanted {:.3g}", trial.loss_rms, trial.threshold);
   }
-  if (!trial.is_orbit || quality.speed_rms >= corrector::least_known_speed(felt)) return;
+  if (!trial.is_orbit || quality.speed_rms >= corrector::least_known_speed(size, jacobian)) return;
   trial.is_orbit = trial.at_rounding = false;
   trial.lost_in_rounding = true;
-  trial.reason = corrector::lost_in_rounding_text(quality.speed_rms, felt);
+  trial.reason = corrector::lost_in_rounding_text(quality.speed_rms, size, jacobian);
 }
 
 /// The residual that truncation leaves is about 2 pi / T K tail: only where that explains a loss above its threshold

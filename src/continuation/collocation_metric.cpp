@@ -144,8 +144,9 @@ std::vector<double> step_conditions(const Collocation& e, const Prediction& pred
 }
 
 double rounding_floor(const Collocation& e, const Collocation::Quality& quality, double period) {
-  return std::max(corrector::rounding_floor(e.grid().cutoff(), period, quality.size, quality.speed_rms, quality.felt),
-                  nodal_rounding * quality.felt);
+  return std::max(
+      corrector::rounding_floor(e.grid().cutoff(), period, quality.size, quality.speed_rms, e.field_jacobian_rms()),
+      nodal_rounding * quality.size * e.field_jacobian_rms());
 }
 
 void take_out_shift(const Collocation& e, Prediction& prediction, const std::vector<double>& last) {

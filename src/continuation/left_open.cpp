@@ -48,10 +48,11 @@ std::vector<double> residual_of(const Collocation& e, double period, double size
 /// What rounding leaves of the residual in dz/dt: of its differences by what moves about the centre, whose change the
 /// unknowns are, and of the field by the state, which about a far origin is much larger. No less than is left.
 double residual_left(const Collocation& e, const Collocation::Quality& quality, double period) {
-  const double moving = std::max(
-      corrector::rounding_floor(e.grid().cutoff(), period, quality.amplitude, quality.speed_rms, quality.felt_moving),
-      nodal_rounding * quality.felt_moving);
-  const double expected = std::max(moving, corrector::state_rounding(quality.felt));
+  const double jacobian = e.field_jacobian_rms();
+  const double moving =
+      std::max(corrector::rounding_floor(e.grid().cutoff(), period, quality.amplitude, quality.speed_rms, jacobian),
+               nodal_rounding * quality.amplitude * jacobian);
+  const double expected = std::max(moving, corrector::state_rounding(quality.size, jacobian));
   return std::max(expected, std::min(quality.asked, rounding_floor(e, quality, period)));
 }
 

@@ -39,16 +39,12 @@ constexpr double roundings = 4.0 * std::numeric_limits<double>::epsilon();
 /// this factor (pendulums with l2 = 1e-3 and m2 = 1e3).
 constexpr double of_rounding = 10.0 * std::numeric_limits<double>::epsilon();
 
-/// rms of |A| |z| for coordinates of the sizes |z|, entry by entry; 0 without the field's Jacobian.
-double felt_by_field(const loss::Linearization& lin, std::span<const double> sizes) {
-  if (lin.order() == loss::Linearization::Order::residual) return 0.0;
+double rms_field_jacobian(const loss::Linearization& lin) {
   double sum = 0.0;
   for (int i = 0; i < lin.dimension(); ++i)
-    for (std::size_t j = 0; j < lin.density().size(); ++j) {
-      double row = 0.0;
-      for (int l = 0; l < lin.dimension(); ++l)
-        row += std::abs(lin.field_jacobian(i, l)[j] * sizes[static_cast<std::size_t>(l)]);
-      sum += lin.density()[j] * row * row;
+    for (int l = 0; l < lin.dimension(); ++l) {
+      const double* a = lin.field_jacobian(i, l);
+      for (std::size_t j = 0; j < lin.density().size(); ++j) sum += lin.density()[j] * a[j] * a[j];
     }
   return std::sqrt(sum / lin.nodes());
 }
@@ -120,22 +116,24 @@ Outcome outcome_of(Stop stop, const loop::Loop& loop, double loss_rms, double th
 
 }  // namespace
 
-double state_rounding(double felt) { return roundings * felt; }
+double state_rounding(double size, double field_jacobian) { return roundings * size * field_jacobian; }
 
-double least_known_speed(double felt) { return state_rounding(felt) / largest_unknown; }
+double least_known_speed(double size, double field_jacobian) {
+  return state_rounding(size, field_jacobian) / largest_unknown;
+}
 
-std::string lost_in_rounding_text(double speed, double felt) {
+std::string lost_in_rounding_text(double speed, double size, double field_jacobian) {
   return fmt::format(
       "rounding of the state leaves {:.1e} of the speed open, {:g} is allowed: a larger amplitude is needed",
-      state_rounding(felt) / speed, largest_unknown);
+      state_rounding(size, field_jacobian) / speed, largest_unknown);
 }
 
-double acceptance_threshold(double tolerance, double speed, double felt) {
-  return std::max(tolerance * std::min(1.0, speed), state_rounding(felt));
+double acceptance_threshold(double tolerance, double speed, double size, double field_jacobian) {
+  return std::max(tolerance * std::min(1.0, speed), state_rounding(size, field_jacobian));
 }
 
-double tolerance_met(double tolerance, double loss_rms, double speed, double felt) {
-  const double met = std::max(loss_rms, state_rounding(felt)) / std::min(1.0, speed);
+double tolerance_met(double tolerance, double loss_rms, double speed, double size, double field_jacobian) {
+  const double met = std::max(loss_rms, state_rounding(size, field_jacobian)) / std::min(1.0, speed);
   return met > tolerance ? met : 0.0;
 }
 
@@ -143,23 +141,36 @@ double least_known_amplitude(const systems::System& system, const loop::Loop& re
   const double speed = loop::rms_speed(loop::perturbation(rest, direction));
   try {
     const loss::Linearization at_rest(system, rest, loss::Linearization::Order::jacobian);
-    return least_known_speed(felt_by_field(at_rest, loop::mean_state(rest))) / speed;
+    return least_known_speed(loop::rms_size(rest), rms_field_jacobian(at_rest)) / speed;
   } catch (const core::NotFiniteError&) {
     return 0.0;
   }
 }
 
-double rounding_floor(int cutoff, double period, double size, double speed, double felt) {
-  return of_rounding * (2.0 * M_PI / period * cutoff * size + felt + speed);
+double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian) {
+  return of_rounding * ((2.0 * M_PI / period * cutoff + field_jacobian) * size + speed);
 }
 
 double rounding_floor(const loop::Loop& loop, const loss::Linearization& linearization) {
+  const bool residual_only = linearization.order() == loss::Linearization::Order::residual;
   return rounding_floor(loop.cutoff, loop.period, loop::rms_size(loop), loop::rms_speed(loop),
-                        felt_by_field(linearization, loop::rms_sizes(loop)));
+                        residual_only ? 0.0 : rms_field_jacobian(linearization));
 }
 
+namespace {
+
+double size_of_mean(const loop::Loop& loop) {
+  double mean_square = 0.0;
+  for (const double v : loop::mean_state(loop)) mean_square += v * v;
+  return std::sqrt(mean_square);
+}
+
+}  // namespace
+
 double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization, double tolerance) {
-  return acceptance_threshold(tolerance, loop::rms_speed(loop), felt_by_field(linearization, loop::mean_state(loop)));
+  const bool residual_only = linearization.order() == loss::Linearization::Order::residual;
+  return acceptance_threshold(tolerance, loop::rms_speed(loop), size_of_mean(loop),
+                              residual_only ? 0.0 : rms_field_jacobian(linearization));
 }
 
 namespace {
@@ -183,14 +194,15 @@ void judge(Result& result, Stop stop, const std::string& solver_reason, const lo
     return;
   }
   const double speed = loop::rms_speed(result.loop);
-  const double felt = felt_by_field(lin, loop::mean_state(result.loop));
-  if (speed < least_known_speed(felt)) {
+  const double size = size_of_mean(result.loop);
+  const double jacobian = rms_field_jacobian(lin);
+  if (speed < least_known_speed(size, jacobian)) {
     result.outcome = Outcome::lost_in_rounding;
-    result.detail = lost_in_rounding_text(speed, felt);
+    result.detail = lost_in_rounding_text(speed, size, jacobian);
     return;
   }
   // The period is open by what rounding leaves of the speed.
-  const double open = state_rounding(felt) / speed * result.loop.period;
+  const double open = state_rounding(size, jacobian) / speed * result.loop.period;
   if (result.newton_step > std::max(options.step_tolerance * (1.0 + length(result.loop)), open)) {
     result.outcome = Outcome::stalled;
     result.detail = fmt::format(
@@ -199,7 +211,7 @@ void judge(Result& result, Stop stop, const std::string& solver_reason, const lo
         result.loss_rms, result.newton_step);
     return;
   }
-  result.tolerance_met = tolerance_met(options.tolerance, result.loss_rms, speed, felt);
+  result.tolerance_met = tolerance_met(options.tolerance, result.loss_rms, speed, size, jacobian);
 }
 
 Result period_lost(Result result, const systems::System& system) {

@@ -249,11 +249,15 @@ void Collocation::factor(const double* u) {
   system.field_jacobian(at(m), _z.data(), _f.data(), _blocks.data());
   const double period = u[period_at()];
   const double scale = _grid.spacing() * period / two_pi;
+  double square = 0.0;
   for (int e = 0; e < d * d; ++e) {
     double* block = _blocks.data() + e * m;
-    for (int j = 0; j < m; ++j) block[j] *= scale * _density[at(j)];
+    for (int j = 0; j < m; ++j) {
+      square += block[j] * block[j];
+      block[j] *= scale * _density[at(j)];
+    }
   }
-  _factor_period = period;
+  _jacobian_rms = std::sqrt(square / m);
   for (int i = 0; i < d; ++i)
     for (int j = 0; j < m; ++j) {
       const double c = scale * _density[at(j)];
@@ -275,7 +279,7 @@ void Collocation::factor(const double* u) {
 }
 
 bool Collocation::has_cells_to_fit() const {
-  return _factor_period > 0.0 && !fitted_cells(_blocks.data(), dimension(), cells(), 1.0).empty();
+  return _jacobian_rms > 0.0 && !fitted_cells(_blocks.data(), dimension(), cells(), 1.0).empty();
 }
 
 void Collocation::factor_box(const double* blocks) {
@@ -311,21 +315,6 @@ void Collocation::factor_jacobian() {
   for (int q = 0; q < borders(); ++q) entries.push_back(period_at() + q);
   _exact = std::make_unique<DenseFactor>(size(), std::move(entries),
                                          [this](const double* v, double* r) { apply_jacobian(v, r); });
-}
-
-double Collocation::felt_by_field(const Eigen::VectorXd& sizes) const {
-  if (!(_factor_period > 0.0)) return 0.0;
-  const int m = cells();
-  const int d = dimension();
-  const double rate = two_pi / (_grid.spacing() * _factor_period);
-  double square = 0.0;
-  for (int i = 0; i < d; ++i)
-    for (int j = 0; j < m; ++j) {
-      double row = 0.0;
-      for (int l = 0; l < d; ++l) row += std::abs(_blocks[at((i * d + l) * m + j)]) * std::abs(sizes(l));
-      square += std::pow(rate / _density[at(j)] * row, 2);
-    }
-  return std::sqrt(square / m);
 }
 
 double Collocation::residual_rounding(const double* u) const {
@@ -422,8 +411,8 @@ Collocation::Quality Collocation::quality(const double* u) const {
     loss += _density[at(j)] * square / m;
     speed += _density[at(j)] * moved / m;
   }
-  Eigen::VectorXd amplitudes(d);
-  Eigen::VectorXd sizes(d);
+  double amplitude = 0.0;
+  double size = 0.0;
   for (int i = 0; i < d; ++i) {
     double mean = 0.0;
     double square = 0.0;
@@ -434,8 +423,8 @@ Collocation::Quality Collocation::quality(const double* u) const {
     }
     // Over the whole loop the mean survives in coordinates that the symmetries leave alone.
     if (!keeps_mean(i)) mean = 0.0;
-    amplitudes(i) = std::sqrt(std::max(0.0, square - mean * mean));
-    sizes(i) = std::sqrt(std::max(0.0, square + (2.0 * mean + _centre[at(i)]) * _centre[at(i)]));
+    amplitude += std::max(0.0, square - mean * mean);
+    size += square + (2.0 * mean + _centre[at(i)]) * _centre[at(i)];
   }
   // The loop between the points where it was solved.
   node_states(u);
@@ -457,11 +446,8 @@ Collocation::Quality Collocation::quality(const double* u) const {
           std::sqrt(loss),
           std::sqrt(between),
           std::sqrt(speed),
-          amplitudes.norm(),
-          sizes.norm(),
-          felt_by_field(sizes),
-          felt_by_field(Eigen::Map<const Eigen::VectorXd>(_centre.data(), d)),
-          felt_by_field(amplitudes)};
+          std::sqrt(amplitude),
+          std::sqrt(size)};
 }
 
 double Collocation::distance(const double* a, const double* b) const {

@@ -67,10 +67,9 @@ struct Result {
 /// factor of ten or so; a loss that is all truncation is at about 1 whatever the share. Not measured.
 inline constexpr double least_explained = 1e-2;
 
-/// What the rounding of a mean state z is in the residual, through the field's Jacobian A: 4 eps `felt`, the latter being
-/// rms |A| |z|, entry by entry: a coordinate that decays fast may be small, and where it rests is known as well as
-/// itself. It matters for small amplitudes around a point away from 0.
-[[nodiscard]] double state_rounding(double felt);
+/// What the rounding of a mean state of size `size` is in the residual, through rms |df/dz| `field_jacobian`:
+/// 4 eps |z| |df/dz|. It matters for small amplitudes around a point away from 0.
+[[nodiscard]] double state_rounding(double size, double field_jacobian);
 
 /// A loop of which that rounding is a larger part of rms |dz/dt| is no orbit that is known: T is open by this part of
 /// itself at most, and a tangent or multipliers likewise. Measured around (0, pi) of the double pendulum: T is off by
@@ -82,17 +81,17 @@ inline constexpr double largest_unknown = 1e-2;
 inline constexpr int largest_dense = 4000;
 
 /// The rms |dz/dt| at which rounding is just that part.
-[[nodiscard]] double least_known_speed(double felt);
+[[nodiscard]] double least_known_speed(double size, double field_jacobian);
 
 /// A sentence about a loop that is slower.
-[[nodiscard]] std::string lost_in_rounding_text(double speed, double felt);
+[[nodiscard]] std::string lost_in_rounding_text(double speed, double size, double field_jacobian);
 
 /// The tolerance that an accepted loop meets where rounding does not let it meet `tolerance`; else 0.
-[[nodiscard]] double tolerance_met(double tolerance, double loss_rms, double speed, double felt);
+[[nodiscard]] double tolerance_met(double tolerance, double loss_rms, double speed, double size, double field_jacobian);
 
-/// The threshold for sqrt(loss) of a loop with rms |dz/dt| `speed`: tolerance * min(1, speed), never below
-/// `state_rounding` of the mean state.
-[[nodiscard]] double acceptance_threshold(double tolerance, double speed, double felt);
+/// The threshold for sqrt(loss) of a loop with rms |dz/dt| `speed`, mean state of size `size` and rms |df/dz|
+/// `field_jacobian`: tolerance * min(1, speed), never below `state_rounding`.
+[[nodiscard]] double acceptance_threshold(double tolerance, double speed, double size, double field_jacobian);
 /// The same at a loop; the rounding error counts where the linearization has the field's Jacobian.
 [[nodiscard]] double acceptance_threshold(const loop::Loop& loop, const loss::Linearization& linearization,
                                           double tolerance);
@@ -103,9 +102,9 @@ inline constexpr int largest_dense = 4000;
                                            const loop::Tangent& direction);
 
 /// What rounding may leave of sqrt(loss) of a loop with K harmonics, whatever the tolerance: that of the modes, of rms
-/// size `size`, reaches the residual multiplied by 2 pi K/T and as `felt` by the field, rms |A| |z|, that of the field
-/// by rms |dz/dt| `speed`.
-[[nodiscard]] double rounding_floor(int cutoff, double period, double size, double speed, double felt);
+/// size `size`, reaches the residual multiplied by 2 pi K/T and by rms |df/dz| `field_jacobian`, that of the field by
+/// rms |dz/dt| `speed`.
+[[nodiscard]] double rounding_floor(int cutoff, double period, double size, double speed, double field_jacobian);
 /// The same at a loop, with the field's Jacobian where the linearization has it.
 [[nodiscard]] double rounding_floor(const loop::Loop& loop, const loss::Linearization& linearization);
 

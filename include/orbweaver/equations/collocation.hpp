@@ -96,12 +96,10 @@ class Collocation final : public PreconditionedEquations {
     double speed_rms = 0.0;  ///< of |f|^2
     double amplitude = 0.0;  ///< of |z - mean z|^2, winding left out
     double size = 0.0;       ///< of |z|^2, winding left out
-    // Of what the field's Jacobian, where the preconditioner was built, makes of each, entry by entry: | |A| |z| |^2.
-    double felt = 0.0;         ///< of the state,
-    double felt_centre = 0.0;  ///< of the centre,
-    double felt_moving = 0.0;  ///< and of what moves about its mean
   };
   [[nodiscard]] Quality quality(const double* u) const;
+  /// sqrt of the mean of |df/dz|^2 where the preconditioner was built.
+  [[nodiscard]] double field_jacobian_rms() const { return _jacobian_rms; }
   /// Closed integral of p dq.
   [[nodiscard]] double action(const double* u) const;
 
@@ -130,8 +128,6 @@ class Collocation final : public PreconditionedEquations {
   void factor_jacobian();
   void begin_gmres(const double* u);
   void solve_linearised(double* r) const;
-  /// rms over the cells of |A| |z|, entry by entry; 0 before a preconditioner is built (_factor_period is 0 till then).
-  [[nodiscard]] double felt_by_field(const Eigen::VectorXd& sizes) const;
   /// The system with the parameters of `u`.
   [[nodiscard]] const systems::System& system_at(const double* u) const;
   /// df/ds at the midpoints for a scalar s other than T, into _gradient.
@@ -157,7 +153,7 @@ class Collocation final : public PreconditionedEquations {
   double _rounding = 0.0;               // of the residual, where GMRES was begun
   mutable bool _is_reached = false;     // by what GMRES solved last
   Preconditioner _preconditioner = Preconditioner::box;
-  double _factor_period = 0.0;
+  double _jacobian_rms = 0.0;
   mutable std::shared_ptr<const systems::System> _moved;  // with the parameters of the last point, where any moves
   mutable std::vector<double> _z, _f, _gradient, _blocks, _columns, _nodal, _slope, _node_field, _difference;
 };

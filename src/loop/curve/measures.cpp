@@ -176,12 +176,4 @@ double rms_size(const Loop& loop) {
   return std::sqrt(squared_norm(mean_state(loop)) + amplitude * amplitude);
 }
 
-std::vector<double> rms_sizes(const Loop& loop) {
-  Samples squares = oscillation_of(loop);
-  for (double& z : squares.states) z *= z;
-  std::vector<double> sizes = mean_of(squares, loop.dimension);
-  for (double& size : sizes) size = std::sqrt(size);
-  return sizes;
-}
-
 }  // namespace orbweaver::loop

@@ -34,9 +34,6 @@ struct Samples {
 /// sqrt of the mean over a period of |z|^2 (less the winding): the scale of rounding errors in the modes.
 [[nodiscard]] double rms_size(const Loop& loop);
 
-/// The same of each coordinate.
-[[nodiscard]] std::vector<double> rms_sizes(const Loop& loop);
-
 /// The mean over a period of z (less the winding): a_0 where the time map is the identity.
 [[nodiscard]] std::vector<double> mean_state(const Loop& loop);
 
