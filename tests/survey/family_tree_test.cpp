@@ -425,12 +425,15 @@ TEST_F(Families, CrossingsAreRowsAsTheyWereLocated) {
   EXPECT_EQ(row.fundamental_order, 2);
 }
 
-// Two readings of one fold differ by rounding of their location; other folds and those of another kind are their own.
+// Two readings of one fold have one value, and lie between the same orbits; folds of another value, farther off or of
+// another kind are their own.
 TEST_F(Families, FoldsThatAreReadTwiceAreOneRow) {
-  const auto fold = [](int number, double arclength, archive::CrossingKind kind) {
+  const auto fold = [](int number, double arclength, archive::CrossingKind kind, double value = 1.0) {
     Ended place = located({fmt::format("0000.0000/{:03}.fold", number), 8.0, arclength, 1}, 0);
     LocateOutcome crossing = unpack_locate_outcome(place.outcome.payload);
     crossing.kind = kind;
+    crossing.energy = value;
+    crossing.within = 1e-3;
     place.outcome.payload = pack(crossing);
     return place;
   };
@@ -439,12 +442,14 @@ TEST_F(Families, FoldsThatAreReadTwiceAreOneRow) {
       resolve({ended(base_work(), EndReason::period_limit, 5, 12), fold(0, 2.0, CrossingKind::fold_energy),
                fold(1, 2.0001, CrossingKind::fold_energy), fold(2, 1.9999, CrossingKind::fold_energy),
                fold(3, 2.0, CrossingKind::fold_period), fold(4, 2.01, CrossingKind::fold_energy),
-               fold(5, 2.0, CrossingKind::branch_point), fold(6, 2.0, CrossingKind::branch_point)});
+               fold(7, 2.0001, CrossingKind::fold_energy, 1.0 + 1e-6), fold(5, 2.0, CrossingKind::branch_point),
+               fold(6, 2.0, CrossingKind::branch_point)});
   std::vector<std::pair<CrossingKind, double>> rows;
   for (const archive::CrossingRecord& row : result.tables.crossings) rows.emplace_back(row.kind, row.arclength);
-  EXPECT_THAT(rows, ElementsAre(std::pair(CrossingKind::fold_energy, 2.0), std::pair(CrossingKind::fold_period, 2.0),
-                                std::pair(CrossingKind::fold_energy, 2.01), std::pair(CrossingKind::branch_point, 2.0),
-                                std::pair(CrossingKind::branch_point, 2.0)));
+  EXPECT_THAT(rows,
+              ElementsAre(std::pair(CrossingKind::fold_energy, 2.0), std::pair(CrossingKind::fold_period, 2.0),
+                          std::pair(CrossingKind::fold_energy, 2.01), std::pair(CrossingKind::branch_point, 2.0),
+                          std::pair(CrossingKind::branch_point, 2.0), std::pair(CrossingKind::fold_energy, 2.0001)));
 }
 
 TEST_F(Families, ThatWouldBeBeyondThePeriodLimitAreCounted) {
