@@ -267,9 +267,10 @@ Trial CollocationProblem::solve(Prediction prediction, const std::vector<double>
       // hold.
       if (result.finite && holds_to_rounding(e, trial.values)) trial.known_to = last_change;
       state().factor_point.clear();
-      trial.reason = result.finite ? fmt::format("no convergence in {} iterations, the last change {:.2g}",
-                                                 result.iterations, result.last_change)
-                                   : not_finite_at(e, trial.values, predicted, beyond_numbers);
+      trial.reason = result.finite
+                         ? fmt::format("no convergence in {} iteration{}, the last change {:.2g}", result.iterations,
+                                       result.iterations == 1 ? "" : "s", result.last_change)
+                         : not_finite_at(e, trial.values, predicted, beyond_numbers);
     }
   } catch (const core::NumericalError& error) {
     state().factor_point.clear();

@@ -321,7 +321,7 @@ TEST(Ends, NotFiniteSaysAtWhichStateByEveryMethod) {
 TEST(Ends, DivergenceSaysHowFar) {
   const FirstTrial first = first_trial(Spring(-1.1e4, std::numeric_limits<double>::infinity()));
   EXPECT_FALSE(first.trial.converged);
-  EXPECT_THAT(first.trial.reason, HasSubstr("no convergence in 1 iterations, the last change "));
+  EXPECT_THAT(first.trial.reason, HasSubstr("no convergence in 1 iteration, the last change "));
   EXPECT_THAT(first.trial.reason, Not(testing::EndsWith(" 0")));
 }
 
