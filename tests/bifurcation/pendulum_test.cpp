@@ -54,8 +54,8 @@ TEST(PendulumCrossings, InPhase) {
                                       {1, 0, 10.416773281973249}});
 }
 
-// Where the family without the reversor leaves, an index is 2. Rounding moves orbits that keep the half turn alone along
-// that family, and their index with them: by more than the bound of one loop's index says.
+// Where the family without the reversor leaves, an index is 2. Rounding moves orbits that keep the half turn alone
+// along that family, and their index with them: by more than the bound of one loop's index says.
 TEST(StabilityOfAnOrbit, KnowsAnIndexNoBetterThanTheOrbit) {
   const auto system = test::pendulum();
   const loop::Isotropy isotropy = test::pendulum_isotropy(*system);

@@ -33,8 +33,8 @@ survey::Summary survey_of(const core::Communicator& comm, const Parameters& para
 }
 
 // One curve from one oscillation to the other, as both begin there. A family on it is a circle, along which no reversor
-// holds the phase. An index touches 2 where the reversor fixes its orbits: rounding made two crossings of that with some
-// of these steps and first orbits.
+// holds the phase. An index touches 2 where the reversor fixes its orbits: rounding made two crossings of that with
+// some of these steps and first orbits.
 TEST(MagneticWell, OneCurveJoinsBothOscillations) {
   const core::Communicator comm;
   const Parameters parameters{{"k2", 0.99},  {"b", 0.0},    {"e", -0.178}, {"a1", -0.475}, {"a2", 0.224},
