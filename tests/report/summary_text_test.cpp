@@ -73,8 +73,9 @@ TEST(SummaryText, WhatMattersComesFirst) {
   summary.passed_over = {"dips passed over at the bottom: T = 6", "dips passed over at the top: T = 7"};
   const std::string text = report::to_text(summary);
   std::vector<std::size_t> places;
-  for (const char* said : {"2 families, 5 crossings", "failed: A name", "findings: 1", "contradiction: A", "undecided: C",
-                           "note: no small", "passed over at 2 equilibria", "family  ", "In-Phase", "archive: "})
+  for (const char* said :
+       {"2 families, 5 crossings", "failed: A name", "findings: 1", "contradiction: A", "undecided: C",
+        "note: no small", "passed over at 2 equilibria", "family  ", "In-Phase", "archive: "})
     places.push_back(text.find(said));
   EXPECT_THAT(places, ::testing::Each(::testing::Ne(std::string::npos)));
   EXPECT_TRUE(std::is_sorted(places.begin(), places.end())) << text;

@@ -93,10 +93,10 @@ TEST(FirstOrbits, APairOfFoldsWithinAStepIsFoundWhereItsSlopesAreSmall) {
 TEST(FirstOrbits, LongStepsLoseNothing) {
   const core::Communicator comm;
   const auto by = [&](const std::string& step) {
-    const survey::Summary summary = test::run(
-        comm, springs_in_ms({"survey.subharmonics=4", "limits.period=6100", "limits.energy=[-.inf, 24]",
-                             "continuation.step=" + step}),
-        "steps");
+    const survey::Summary summary = test::run(comm,
+                                              springs_in_ms({"survey.subharmonics=4", "limits.period=6100",
+                                                             "limits.energy=[-.inf, 24]", "continuation.step=" + step}),
+                                              "steps");
     EXPECT_EQ(summary.failures, 0U) << testing::PrintToString(summary.failed_tasks);
     return test::Atlas(summary.atlas);
   };
