@@ -62,8 +62,8 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
   const auto probe = [&](double position) -> std::optional<bifurcation::TestPoint> {
     const auto point = curve.at(position);
     if (!point || continuation::way_from(_followed.start, point->loop).is_along_base()) return std::nullopt;
-    return _followed.test_point(position,
-                                stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+    return _events.test_point(position, point->loop,
+                              stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
   };
   std::optional<spectrum::Stability> birth =
       stability_of(*_followed.system, _followed.start.base, _followed.start.isotropy, _followed.team);
@@ -74,6 +74,7 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
     const bool is_zero = std::abs(reading.value) <= bifurcation::zero_at_birth;
     reading.error = is_zero ? bifurcation::zero_at_birth : 0.0;  // orbits are not isolated there, and have no bounds
   }
+  _events.forget_hidden();
   bifurcation::Detector detector;
   std::vector<bifurcation::Bracket> found = detector.advance(at_birth, probe);
   std::vector<bifurcation::TestPoint> places;
@@ -81,8 +82,8 @@ void BranchEnds::indices_from_birth(continuation::FamilyCurve& curve) {
     if (auto place = probe(known[0].position + share * (known[1].position - known[0].position)))
       places.push_back(*std::move(place));
   const loop::Loop& first = known[1].loop;
-  places.push_back(_followed.test_point(
-      known[1].position, stability_of(*_followed.system, first, _followed.start.isotropy, _followed.team)));
+  places.push_back(_events.test_point(
+      known[1].position, first, stability_of(*_followed.system, first, _followed.start.isotropy, _followed.team)));
   for (const bifurcation::TestPoint& place : places)
     for (const bifurcation::Bracket& bracket : detector.advance(place, probe)) found.push_back(bracket);
   _events.add_zeros_from_birth(found, known);
@@ -210,8 +211,9 @@ std::vector<continuation::Orbit> BranchEnds::look_behind_last(const std::optiona
     if (_followed.curve.known().size() > 2) _events.add_paired_folds(_followed.curve.known().size() - 2);
     return {};
   }
+  const double left = arrival->position - way.points.back().position;
   add_behind(way.points);
-  _events.go_to_meeting(_followed.last->arclength);
+  _events.go_to_meeting(_followed.last->arclength, way.points.back().position + left);
   std::vector<continuation::Orbit> behind = orbits_to_zeros(way.points);
   const std::vector<bifurcation::Fold> folds = folds_on(*_followed.system, _followed.start.isotropy, way);
   _events.add_folds(folds, _followed.curve.known());
@@ -247,7 +249,7 @@ void BranchEnds::add_orbits(const std::vector<continuation::CurvePoint>& places,
 std::vector<continuation::Orbit> BranchEnds::orbits_to_zeros(const std::vector<continuation::CurvePoint>& places) {
   std::vector<continuation::Orbit> orbits;
   const auto point_at = [&](const continuation::CurvePoint& place) {
-    return _followed.test_point(place.position, _followed.asked_stability(place.loop));
+    return _events.test_point(place.position, place.loop, _followed.asked_stability(place.loop));
   };
   for (std::size_t n = 1; n < places.size(); ++n) {
     const int known = _events.count();

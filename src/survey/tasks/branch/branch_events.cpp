@@ -19,6 +19,9 @@ namespace orbweaver::survey {
 
 namespace {
 
+/// Of the way from a birth or to a meeting: an orbit that rounding leaves open by more across its family tells no index
+/// of 2 there. Not measured.
+constexpr double open_at_end = 0.1;
 /// Of the function of the multiplier 1, which is zero at a meeting: at the nearest orbit before it that is found. Not
 /// measured.
 constexpr double short_of_meeting = 0.5;
@@ -53,8 +56,46 @@ std::optional<bifurcation::TestPoint> BranchEvents::probe(double position) {
   if (position < _followed.curve.known().front().position) return std::nullopt;  // so far back no orbits are kept
   const std::optional<continuation::CurvePoint> point = _followed.curve.at(position);
   if (!point) return std::nullopt;
-  return _followed.test_point(position,
-                              stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+  return test_point(position, point->loop,
+                    stability_of(*_followed.system, point->loop, _followed.start.isotropy, _followed.team));
+}
+
+/// An index leaves 2 there like a power of the way, within what rounding makes of it first: its bound does not tell.
+bool BranchEvents::is_hidden_beside_end(double way, const loop::Loop& loop) const {
+  if (way <= _hidden_to) return true;
+  if (way >= _told_from) return false;
+  const double across = continuation::left_open_by_rounding(*_followed.system, loop, _followed.start.isotropy).across;
+  const bool is_told = across > 0.0 && across < open_at_end * way;
+  (is_told ? _told_from : _hidden_to) = way;
+  return !is_told;
+}
+
+void BranchEvents::forget_hidden() {
+  _hidden_to = 0.0;
+  _told_from = std::numeric_limits<double>::infinity();
+}
+
+void BranchEvents::go_to_meeting(double last, double meeting) {
+  forget_hidden();
+  _last = last;
+  _meeting = meeting;
+}
+
+bifurcation::TestPoint BranchEvents::test_point(double position, const loop::Loop& loop,
+                                                const std::optional<spectrum::Stability>& stability) const {
+  bifurcation::TestPoint point = _followed.test_point(position, stability);
+  const bool is_behind = position > _last;
+  const bool is_beside_end = is_behind || (_followed.work.lineage.depth > 0 && position <= 0.0);
+  for (std::size_t f = 0; f < point.readings.size(); ++f) {
+    if (!is_beside_end || !is_of_one(_followed.functions[f])) continue;
+    double& error = point.readings[f].error;
+    error *= bifurcation::error_margin;
+    const double size = std::abs(point.readings[f].value);
+    if (!(size > error) || size > bifurcation::zero_at_birth) continue;
+    const double way = is_behind ? _meeting - position : continuation::arclength_between(_followed.start.base, loop);
+    if (is_hidden_beside_end(way, loop)) error = bifurcation::zero_at_birth;
+  }
+  return point;
 }
 
 void BranchEvents::detect_zeros(const bifurcation::TestPoint& point) {
@@ -111,7 +152,7 @@ void BranchEvents::detect_meetings(const bifurcation::StabilityAt& from, const b
 }
 
 void BranchEvents::detect(const continuation::Orbit& orbit, const std::optional<spectrum::Stability>& stability) {
-  bifurcation::TestPoint point = _followed.test_point(orbit.arclength, stability);
+  bifurcation::TestPoint point = test_point(orbit.arclength, orbit.loop, stability);
   point.halvings = (orbit.halvings + 1) / 2;  // what these show asks for more
   detect_zeros(point);
   const std::vector<continuation::FamilyCurve::Known>& known = _followed.curve.known();

@@ -39,8 +39,15 @@ class BranchEvents {
   /// Between two orbits: what the test functions at both do not show. Before `detect` of the second.
   void detect_meetings(const bifurcation::StabilityAt& from, const bifurcation::StabilityAt& to);
   void detect_zeros(const bifurcation::TestPoint& point);
-  /// The branch meets another family behind the orbit at `last`: a multiplier is 1 there, which is no event.
-  void go_to_meeting(double last) { _last = last; }
+  /// The branch meets another family at `meeting`, behind the orbit at `last`. A multiplier is 1 there, which is no
+  /// event: on the way a function of that goes to zero like a power of the distance, as beside the birth, and counts
+  /// only where rounding cannot have made it.
+  void go_to_meeting(double last, double meeting);
+  /// The test functions of the branch at an orbit, as they count there.
+  [[nodiscard]] bifurcation::TestPoint test_point(double position, const loop::Loop& loop,
+                                                  const std::optional<spectrum::Stability>& stability) const;
+  /// What rounding hides beside an end is asked anew: a branch that goes on from a checkpoint does not know it.
+  void forget_hidden();
   /// What only the family's end shows of test functions, from the stored orbits alone, whatever was probed before.
   void finish_zeros();
 
@@ -82,7 +89,12 @@ class BranchEvents {
   int _count = 0;
   double _passed_one = std::numeric_limits<double>::quiet_NaN();
   double _last = std::numeric_limits<double>::infinity();
+  double _meeting = std::numeric_limits<double>::infinity();
   std::vector<queue::Task> _tasks;
+  // Rounding leaves orbits the more open the nearer they are to the birth, or to the meeting: up to and from which
+  // distance it is known.
+  mutable double _hidden_to = 0.0;
+  mutable double _told_from = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace orbweaver::survey
