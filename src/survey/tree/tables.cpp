@@ -41,7 +41,8 @@ class FoldsOnce {
     double arclength;
     double within;
   };
-  /// The values at a fold are known to the square of its place, which is located to 1e-10, or is open by 1e-5 at most.
+  /// The value at a fold is known to the square of its place, which is located to 1e-10 and seldom open by more than
+  /// 1e-5. Not measured.
   static constexpr double same_value = 1e-9;
   std::map<std::pair<std::string, archive::CrossingKind>, std::multimap<double, Place>> _folds;  // by family and kind
 };
