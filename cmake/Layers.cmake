@@ -1,6 +1,6 @@
 # The layers in the order of docs/architecture.md. A layer may include only those before it; tests/structure checks the includes.
 set(ORBWEAVER_LAYERS
-  core ad numerics systems taylor scene loop loss equations spectrum corrector starts continuation bifurcation certificate archive queue
+  core document model ad numerics systems taylor scene loop loss equations spectrum corrector starts continuation bifurcation certificate archive queue
   survey refine prove cost report)
 
 # g++ 12 reports its own AVX-512 intrinsics as maybe-uninitialized wherever Eigen inlines them.

@@ -20,6 +20,7 @@
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
+#include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/taylor/flow.hpp"
@@ -239,7 +240,7 @@ class Certifier::Parts {
     for (const State& state : _states) {
       const std::vector<ad::Rounded> z(state.begin(), state.end());
       const auto energy =
-          ad::evaluate<ad::Rounded>(_formulas->tape, std::span(_formulas->conserved).first(1), z, parameters);
+          model::evaluate<ad::Rounded>(_formulas->graph, std::span(_formulas->conserved).first(1), z, parameters);
       largest = std::max(largest, energy.front().error());
     }
     return largest;

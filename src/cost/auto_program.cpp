@@ -96,7 +96,7 @@ std::string source(const systems::Formulas& formulas) {
   const auto parameter = [&](int number) {
     return systems::fortran_literal(formulas.values[static_cast<std::size_t>(number)]);
   };
-  const systems::FortranCode code = systems::fortran_code(formulas.tape, outputs, input, parameter);
+  const systems::FortranCode code = systems::fortran_code(formulas.graph, outputs, input, parameter);
   const auto result = [&](int i) { return code.results[static_cast<std::size_t>(i)]; };
   std::string text = fmt::format(
       "SUBROUTINE FUNC(NDIM,U,ICP,PAR,IJAC,F,DFDU,DFDP)\n  IMPLICIT NONE\n"

@@ -4,6 +4,9 @@
 #include <sstream>
 #include <string>
 
+#include <acb_hypgeom.h>
+#include <arb_hypgeom.h>
+
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
 
@@ -173,7 +176,11 @@ ORBWEAVER_BALL_FUNCTION(cos)
 ORBWEAVER_BALL_FUNCTION(asin)
 ORBWEAVER_BALL_FUNCTION(acos)
 ORBWEAVER_BALL_FUNCTION(atan)
+ORBWEAVER_BALL_FUNCTION(tanh)
+ORBWEAVER_BALL_FUNCTION(hypgeom_erf)
 #undef ORBWEAVER_BALL_FUNCTION
+
+Ball erf(const Ball& x) { return hypgeom_erf(x); }
 
 Ball pow(const Ball& x, const Ball& exponent) {
   Ball result;
@@ -251,9 +258,15 @@ ComplexBall cos(const ComplexBall& x) {
   return result;
 }
 
-ComplexBall pow(const ComplexBall& x, double exponent) {
+ComplexBall tanh(const ComplexBall& x) {
   ComplexBall result;
-  acb_pow_analytic(result.get(), x.get(), ComplexBall(exponent).get(), 1, bits_in_force);
+  acb_tanh(result.get(), x.get(), bits_in_force);
+  return result;
+}
+
+ComplexBall erf(const ComplexBall& x) {
+  ComplexBall result;
+  acb_hypgeom_erf(result.get(), x.get(), bits_in_force);
   return result;
 }
 

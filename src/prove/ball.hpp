@@ -104,11 +104,13 @@ class Ball {
 [[nodiscard]] Ball asin(const Ball& x);
 [[nodiscard]] Ball acos(const Ball& x);
 [[nodiscard]] Ball atan(const Ball& x);
+[[nodiscard]] Ball tanh(const Ball& x);
+[[nodiscard]] Ball erf(const Ball& x);
 [[nodiscard]] Ball pow(const Ball& x, const Ball& exponent);
 
 using BallVector = std::vector<Ball>;
 
-/// A complex number in a rectangle. Roots, logarithms and powers are not finite where the rectangle meets the cut of
+/// A complex number in a rectangle. Roots and logarithms are not finite where the rectangle meets the cut of
 /// their branch: what is finite is analytic on all of the rectangle.
 class ComplexBall {
  public:
@@ -152,7 +154,8 @@ class ComplexBall {
 [[nodiscard]] ComplexBall log(const ComplexBall& x);
 [[nodiscard]] ComplexBall sin(const ComplexBall& x);
 [[nodiscard]] ComplexBall cos(const ComplexBall& x);
-[[nodiscard]] ComplexBall pow(const ComplexBall& x, double exponent);
+[[nodiscard]] ComplexBall tanh(const ComplexBall& x);
+[[nodiscard]] ComplexBall erf(const ComplexBall& x);
 /// Not needed by any registered system, and not finite: Arb does not say where their branches are cut.
 [[nodiscard]] ComplexBall asin(const ComplexBall& x);
 [[nodiscard]] ComplexBall acos(const ComplexBall& x);

@@ -19,7 +19,6 @@ struct Arithmetic<prove::Ball> {
   static void negate(Real& out, const Real& a) { arb_neg(out.get(), a.get()); }
   static void multiply(Real& out, const Real& a, long k) { arb_mul_si(out.get(), a.get(), k, bits()); }
   static void divide(Real& out, const Real& a, long k) { arb_div_si(out.get(), a.get(), k, bits()); }
-  static Real power(const Real& x, double exponent) { return pow(x, Real(exponent)); }
 
   class Sum {
    public:

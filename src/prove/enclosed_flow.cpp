@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbweaver/ad/tape.hpp"
+#include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::prove {
@@ -121,8 +121,8 @@ EnclosedFlow::EnclosedFlow(const systems::Formulas& formulas, const BallVector& 
       _complex_parameters(parameters.begin(), parameters.end()),
       _digits(digits),
       _order(std::max(least_order, static_cast<int>(std::ceil(order_a_digit * digits)))),
-      _state(formulas.tape, formulas.field, parameters, _order),
-      _variational(formulas.tape, outputs_of(formulas), parameters, _order),
+      _state(formulas.graph, formulas.field, parameters, _order),
+      _variational(formulas.graph, outputs_of(formulas), parameters, _order),
       _last_radius(first_radius) {
   core::require(parameters.size() == formulas.parameters.size(), "one value a parameter");
 }
@@ -135,7 +135,7 @@ std::optional<EnclosedFlow::Disc> EnclosedFlow::disc_of_radius(const BallVector&
     std::vector<ComplexBall> region;
     for (std::size_t i = 0; i < d; ++i) region.emplace_back(box[i].widened(reach[i]), Ball::around_zero(reach[i]));
     const std::vector<ComplexBall> speed =
-        ad::evaluate<ComplexBall>(_formulas.tape, _formulas.field, region, _complex_parameters);
+        model::evaluate<ComplexBall>(_formulas.graph, _formulas.field, region, _complex_parameters);
     bool holds = n > 0;
     BallVector needed(d);
     for (std::size_t i = 0; i < d; ++i) {
@@ -144,7 +144,7 @@ std::optional<EnclosedFlow::Disc> EnclosedFlow::disc_of_radius(const BallVector&
       if (!(needed[i] <= reach[i])) holds = false;
     }
     if (holds) {
-      const std::vector<ComplexBall> slopes = ad::evaluate<ComplexBall>(_formulas.tape, _formulas.variations,
+      const std::vector<ComplexBall> slopes = model::evaluate<ComplexBall>(_formulas.graph, _formulas.variations,
                                                                         with_unit_columns(region), _complex_parameters);
       BallMatrix slope(d, d);
       for (std::size_t i = 0; i < d; ++i)
@@ -231,16 +231,16 @@ EnclosedFlow::Image EnclosedFlow::advance(const BallVector& box, const Ball& tim
 }
 
 BallVector EnclosedFlow::field(const BallVector& z) const {
-  return ad::evaluate<Ball>(_formulas.tape, _formulas.field, z, _parameters);
+  return model::evaluate<Ball>(_formulas.graph, _formulas.field, z, _parameters);
 }
 
 Ball EnclosedFlow::energy(const BallVector& z) const {
   const std::vector<int> first{_formulas.conserved.front()};
-  return ad::evaluate<Ball>(_formulas.tape, first, z, _parameters).front();
+  return model::evaluate<Ball>(_formulas.graph, first, z, _parameters).front();
 }
 
 BallVector EnclosedFlow::energy_gradient(const BallVector& z) const {
-  return ad::evaluate<Ball>(_formulas.tape, _formulas.conserved_gradients.front(), z, _parameters);
+  return model::evaluate<Ball>(_formulas.graph, _formulas.conserved_gradients.front(), z, _parameters);
 }
 
 }  // namespace orbweaver::prove

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <type_traits>
 
-#include "orbweaver/ad/tape.hpp"
+#include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 
@@ -251,13 +251,13 @@ Matrix<Real> Shooting<Real>::jacobian(const Points<Real>& points, const Passage<
 
 template <class Real>
 Vector<Real> Shooting<Real>::field(const std::vector<Real>& z) const {
-  return as_vector(ad::evaluate<Real>(_setup.formulas.tape, _setup.formulas.field, z, _parameters));
+  return as_vector(model::evaluate<Real>(_setup.formulas.graph, _setup.formulas.field, z, _parameters));
 }
 
 template <class Real>
 Matrix<Real> Shooting<Real>::linearized(const std::vector<Real>& z) const {
   const std::vector<Real> values =
-      ad::evaluate<Real>(_setup.formulas.tape, _setup.formulas.variations, inputs_of(z), _parameters);
+      model::evaluate<Real>(_setup.formulas.graph, _setup.formulas.variations, inputs_of(z), _parameters);
   Matrix<Real> matrix(as_index(z.size()), as_index(z.size()));
   for (std::size_t i = 0; i < z.size(); ++i)
     for (std::size_t c = 0; c < z.size(); ++c) matrix(as_index(i), as_index(c)) = values[i * z.size() + c];
@@ -267,13 +267,13 @@ Matrix<Real> Shooting<Real>::linearized(const std::vector<Real>& z) const {
 template <class Real>
 Real Shooting<Real>::energy(const std::vector<Real>& z) const {
   const std::vector<int> first{_setup.formulas.conserved.front()};
-  return ad::evaluate<Real>(_setup.formulas.tape, first, z, _parameters).front();
+  return model::evaluate<Real>(_setup.formulas.graph, first, z, _parameters).front();
 }
 
 template <class Real>
 Vector<Real> Shooting<Real>::energy_gradient(const std::vector<Real>& z) const {
   return as_vector(
-      ad::evaluate<Real>(_setup.formulas.tape, _setup.formulas.conserved_gradients.front(), z, _parameters));
+      model::evaluate<Real>(_setup.formulas.graph, _setup.formulas.conserved_gradients.front(), z, _parameters));
 }
 
 template <class Real>

@@ -10,11 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "document.hpp"
+#include "fields.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "system_section.hpp"
-#include "units.hpp"
 
 namespace orbweaver::scene {
 

@@ -10,8 +10,7 @@
 #include <fmt/format.h>
 
 #include "orbweaver/systems/reduced_system.hpp"
-#include "suggest.hpp"
-#include "units.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 
@@ -192,7 +191,7 @@ void read_letters(const Field& field, FixedPoints& points) {
 }  // namespace
 
 void read_fixed_points(const Field& field, const systems::System& system, FixedPoints& points) {
-  const Keys keys(field, "fixed_points: {grid: [[0, 180], [0, 180]]}");
+  const Keys keys(field, names_of_keys(field.path()), "fixed_points: {grid: [[0, 180], [0, 180]]}");
   if (const auto grid = keys.find("grid")) read_grid(*grid, system, points);
   if (const auto names = keys.find("names")) read_names(*names, system, points);
   if (const auto letters = keys.find("letters")) read_letters(*letters, points);

@@ -13,8 +13,7 @@
 #include "orbweaver/core/input_file.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
-#include "source.hpp"
-#include "units.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "document.hpp"
+#include "fields.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::scene {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "source.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 

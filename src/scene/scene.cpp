@@ -6,13 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "document.hpp"
+#include "fields.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/input_file.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "overrides.hpp"
-#include "reader.hpp"
 #include "sections.hpp"
 #include "starts_section.hpp"
 #include "system_section.hpp"
@@ -30,7 +29,7 @@ Field require_key(const Keys& keys, const Field& root, const std::string& key, s
 }
 
 Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& folder) {
-  const Keys keys(root, smallest_scene);
+  const Keys keys(root, names_of_keys(root.path()), smallest_scene);
   Scene scene;
   read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), folder, scene.system);
   if (const auto starts = keys.find("starts")) take_place(*starts, scene.system);

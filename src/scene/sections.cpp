@@ -9,12 +9,12 @@
 
 #include "orbweaver/systems/registry.hpp"
 #include "system_section.hpp"
-#include "units.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 
 void read_sweep(const Field& field, Sweep& sweep) {
-  const Keys keys(field, "sweep: {period: [1, 12], step: 0.01}");
+  const Keys keys(field, names_of_keys(field.path()), "sweep: {period: [1, 12], step: 0.01}");
   const auto step = keys.find("step");
   if (step && step->plain_scalar() != "auto")
     sweep.step = step->number({.lower = 0, .lower_open = true, .example = "0.01"});
@@ -32,7 +32,7 @@ void read_sweep(const Field& field, Sweep& sweep) {
 
 void read_continuation(const Field& field, const systems::System& system, Continuation& continuation) {
   const bool angles = system.structure().has_angles();
-  const Keys keys(field, "continuation: {step: adaptive}");
+  const Keys keys(field, names_of_keys(field.path()), "continuation: {step: adaptive}");
   if (const auto step = keys.find("step"); step && step->plain_scalar() != "adaptive")
     continuation.fixed_step = step->length(angles, "`adaptive` or ");
   if (const auto start = keys.find("start"); start && start->plain_scalar() != "auto") {
@@ -71,7 +71,7 @@ void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice
   std::optional<Field> free;
   std::optional<Field> hold;
   if (field) {
-    const Keys keys(*field, "continuation: {free: m2, hold: energy}");
+    const Keys keys(*field, names_of_keys(field->path()), "continuation: {free: m2, hold: energy}");
     free = keys.find("free");
     hold = keys.find("hold");
   }
@@ -87,7 +87,7 @@ void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice
 }
 
 void read_survey(const Field& field, Survey& survey) {
-  const Keys keys(field, "survey: {depth: 2, subharmonics: 4}");
+  const Keys keys(field, names_of_keys(field.path()), "survey: {depth: 2, subharmonics: 4}");
   if (const auto depth = keys.find("depth")) survey.depth = depth->integer({.lower = 0, .upper = 16, .example = "2"});
   if (const auto most = keys.find("subharmonics"))
     survey.subharmonics = most->integer({.lower = 1, .upper = 16, .example = "4"});
@@ -98,7 +98,7 @@ void read_survey(const Field& field, Survey& survey) {
 }
 
 void read_compute(const Field& field, Compute& compute) {
-  const Keys keys(field, "compute: {certificate: full}");
+  const Keys keys(field, names_of_keys(field.path()), "compute: {certificate: full}");
   if (const auto stability = keys.find("stability")) compute.stability = stability->choice({"true", "false"}) == "true";
   if (const auto certificate = keys.find("certificate")) {
     const std::string level = certificate->choice({"automatic", "none", "closure", "full"});
@@ -143,7 +143,7 @@ void require_energy(const Field& field, const systems::System& system) {
 }  // namespace
 
 void read_limits(const Field& field, const systems::System& system, Limits& limits) {
-  const Keys keys(field, "limits: {period: 30}");
+  const Keys keys(field, names_of_keys(field.path()), "limits: {period: 30}");
   if (const auto period = keys.find("period"))
     limits.period = period->number({.lower = 0, .lower_open = true, .infinite = true, .example = "30"});
   if (const auto energy = keys.find("energy")) {
@@ -175,7 +175,7 @@ void read_limits(const Field& field, const systems::System& system, Limits& limi
 }
 
 void read_events(const Field& field, const systems::System& system, Events& events) {
-  const Keys keys(field, "events: {periods: [10], energies: [0]}");
+  const Keys keys(field, names_of_keys(field.path()), "events: {periods: [10], energies: [0]}");
   if (const auto periods = keys.find("periods"))
     events.periods = periods->numbers({.lower = 0, .lower_open = true, .example = "10"});
   if (const auto energies = keys.find("energies")) {
@@ -185,7 +185,7 @@ void read_events(const Field& field, const systems::System& system, Events& even
 }
 
 void read_section(const Field& field, const systems::System& system, Section& section) {
-  const Keys keys(field, "section: {coordinate: w1, value: 0}");
+  const Keys keys(field, names_of_keys(field.path()), "section: {coordinate: w1, value: 0}");
   const std::vector<std::string>& names = system.info().state_names;
   const auto coordinate = keys.find("coordinate");
   if (!coordinate)
@@ -261,7 +261,7 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
   std::vector<std::string> kinds;
   for (int n = 0; n <= static_cast<int>(last_of(Loci::Of{})); ++n) kinds.push_back(name_of(static_cast<Loci::Of>(n)));
   for (const Field& entry : field.list(example)) {
-    const Keys keys(entry, example);
+    const Keys keys(entry, names_of_keys(entry.path()), example);
     const auto of = keys.find("of");
     const auto free = keys.find("free");
     if (!of || !free) entry.fail("an `of` and a `free`", entry.got(), fmt::format("for example {}", example));
@@ -294,7 +294,7 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
 }
 
 void read_output(const Field& field, Output& output) {
-  const Keys keys(field, "output: {flush_seconds: 5}");
+  const Keys keys(field, names_of_keys(field.path()), "output: {flush_seconds: 5}");
   if (const auto seconds = keys.find("flush_seconds"))
     output.flush_seconds = seconds->number({.lower = 0, .lower_open = true, .example = "5"});
   if (const auto orbits = keys.find("flush_orbits"))

@@ -5,7 +5,7 @@
 
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "reader.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 

@@ -13,7 +13,7 @@
 #include "orbweaver/core/survey_folder.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "sections.hpp"
-#include "units.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 
@@ -71,7 +71,7 @@ double read_period(const Field& field) { return field.number({.lower = 0, .lower
 void read_states(const Field& field, const systems::System& system, std::vector<StateStart>& states) {
   constexpr std::string_view example = "[{state: [0.1, 0], period: 6.3, name: Eight}]";
   for (const Field& entry : field.list(example)) {
-    const Keys keys(entry, example);
+    const Keys keys(entry, names_of_keys(entry.path()), example);
     const std::vector<Field> given = required(keys, entry, {"state", "period"}, example);
     states.push_back({read_state(given[0], system), read_period(given[1]), read_name(keys)});
   }
@@ -117,13 +117,13 @@ void read_orbits(const Field& field, const std::optional<std::filesystem::path>&
                  std::vector<OrbitStart>& orbits) {
   constexpr std::string_view example = "[{archive: other/atlas.h5, family: In-Phase, near: {period: 9}}]";
   for (const Field& entry : field.list(example)) {
-    const Keys keys(entry, example);
+    const Keys keys(entry, names_of_keys(entry.path()), example);
     const std::vector<Field> given = required(keys, entry, {"archive", "family", "near"}, example);
     OrbitStart start;
     start.archive = read_file(Kind::atlas, given[0], keys.find("hash"), folder);
     start.family = given[1].text("In-Phase");
     start.name = read_name(keys);
-    const Keys near(given[2], "near: {period: 9}");
+    const Keys near(given[2], names_of_keys(given[2].path()), "near: {period: 9}");
     int count = 0;
     for (const OrbitStart::Near kind : {OrbitStart::Near::period, OrbitStart::Near::energy, OrbitStart::Near::step})
       if (const auto value = near.find(name_of(kind))) {
@@ -140,7 +140,7 @@ void read_loops(const Field& field, const systems::System& system, const std::op
                 std::vector<LoopStart>& loops) {
   constexpr std::string_view example = "[{file: loop.csv, period: 6.3}]";
   for (const Field& entry : field.list(example)) {
-    const Keys keys(entry, example);
+    const Keys keys(entry, names_of_keys(entry.path()), example);
     const std::vector<Field> given = required(keys, entry, {"file", "period"}, example);
     LoopStart start;
     start.file = read_file(Kind::table, given[0], keys.find("hash"), folder);
@@ -159,7 +159,7 @@ void read_loops(const Field& field, const systems::System& system, const std::op
 
 Recurrences read_recurrences(const Field& field, const systems::System& system) {
   constexpr std::string_view example = "{state: [0.1, 0], time: 500, period: [1, 20]}";
-  const Keys keys(field, example);
+  const Keys keys(field, names_of_keys(field.path()), example);
   const std::vector<Field> given = required(keys, field, {"state", "time", "period"}, example);
   Recurrences recurrences;
   recurrences.state = read_state(given[0], system);
@@ -230,7 +230,7 @@ void take_place(const Field& starts, SystemChoice& choice) {
 
 void read_starts(const Field& field, const systems::System& system, const std::optional<std::filesystem::path>& folder,
                  Scene& scene) {
-  const Keys keys(field, "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}");
+  const Keys keys(field, names_of_keys(field.path()), "starts: {fixed_points: {grid: [[0, 180], [0, 180]]}}");
   if (const auto points = keys.find("fixed_points")) read_fixed_points(*points, system, scene.fixed_points);
   if (const auto sweep = keys.find("sweep")) read_sweep(*sweep, scene.sweep);
   if (const auto states = keys.find("states")) read_states(*states, system, scene.states);

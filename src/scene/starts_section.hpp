@@ -6,7 +6,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "orbweaver/scene/scene.hpp"
-#include "reader.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 

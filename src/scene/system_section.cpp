@@ -166,7 +166,7 @@ const systems::Plugin& plugin_of(const Field& file, const Field* source,
 }  // namespace
 
 void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system) {
-  const Keys keys(field, "system: {name: double_pendulum}");
+  const Keys keys(field, names_of_keys(field.path()), "system: {name: double_pendulum}");
   const auto name = keys.find("name");
   const auto plugin = keys.find("plugin");
   const auto source = keys.find("plugin_source");

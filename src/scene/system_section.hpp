@@ -7,7 +7,7 @@
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/model_info.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "reader.hpp"
+#include "fields.hpp"
 
 namespace orbweaver::scene {
 

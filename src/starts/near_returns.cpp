@@ -46,8 +46,8 @@ struct Trajectory {
 Trajectory sampled(const systems::System& system, std::vector<double> state, double time, std::size_t steps) {
   const auto* formulas = dynamic_cast<const systems::FormulaSystem*>(&system);
   core::require(formulas != nullptr, "a trajectory takes a system with formulas");
-  const systems::Formulas tape = formulas->formulas();
-  taylor::Flow<double> flow(tape, tape.values, {});
+  const systems::Formulas written = formulas->formulas();
+  taylor::Flow<double> flow(written, written.values, {});
   Trajectory out;
   out.d = state.size();
   out.step = time / static_cast<double>(steps);

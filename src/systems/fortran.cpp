@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/model/evaluate.hpp"
+
 namespace orbweaver::systems {
 
 namespace {
@@ -39,7 +41,6 @@ Term operator-(const Term& a, const Term& b) { return assigned(a.text + "-" + b.
 Term operator*(const Term& a, const Term& b) { return assigned(a.text + "*" + b.text); }
 Term operator/(const Term& a, const Term& b) { return assigned(a.text + "/" + b.text); }
 Term operator-(const Term& a) { return assigned("-" + a.text); }
-Term pow(const Term& a, double exponent) { return assigned(a.text + "**" + fortran_literal(exponent)); }
 Term sqrt(const Term& a) { return assigned("SQRT(" + a.text + ")"); }
 Term exp(const Term& a) { return assigned("EXP(" + a.text + ")"); }
 Term log(const Term& a) { return assigned("LOG(" + a.text + ")"); }
@@ -48,11 +49,13 @@ Term cos(const Term& a) { return assigned("COS(" + a.text + ")"); }
 Term asin(const Term& a) { return assigned("ASIN(" + a.text + ")"); }
 Term acos(const Term& a) { return assigned("ACOS(" + a.text + ")"); }
 Term atan(const Term& a) { return assigned("ATAN(" + a.text + ")"); }
+Term tanh(const Term& a) { return assigned("TANH(" + a.text + ")"); }
+Term erf(const Term& a) { return assigned("ERF(" + a.text + ")"); }
 
-/// The largest number among inputs, or parameters, on a tape, plus one.
-std::size_t count_of(const ad::Tape& tape, ad::Operation operation) {
+/// The largest number among inputs, or parameters, in a graph, plus one.
+std::size_t count_of(const model::Graph& graph, model::Operation operation) {
   int most = -1;
-  for (const ad::Tape::Node& node : tape.nodes)
+  for (const model::Node& node : graph.nodes())
     if (node.operation == operation) most = std::max(most, node.first);
   return static_cast<std::size_t>(most + 1);
 }
@@ -71,14 +74,14 @@ std::string fortran_literal(double value) {
   return text;
 }
 
-FortranCode fortran_code(const ad::Tape& tape, std::span<const int> outputs,
+FortranCode fortran_code(const model::Graph& graph, std::span<const int> outputs,
                          const std::function<std::string(int)>& input,
                          const std::function<std::string(int)>& parameter) {
   FortranCode code;
   const Writing writing(code.lines);
-  const std::vector<Term> inputs = named(count_of(tape, ad::Operation::input), input);
-  const std::vector<Term> parameters = named(count_of(tape, ad::Operation::parameter), parameter);
-  const std::vector<Term> results = ad::evaluate<Term>(tape, outputs, inputs, parameters);
+  const std::vector<Term> inputs = named(count_of(graph, model::Operation::input), input);
+  const std::vector<Term> parameters = named(count_of(graph, model::Operation::parameter), parameter);
+  const std::vector<Term> results = model::evaluate<Term>(graph, outputs, inputs, parameters);
   for (const Term& result : results) code.results.push_back(result.text);
   return code;
 }

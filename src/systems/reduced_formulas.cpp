@@ -6,13 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "orbweaver/model/evaluate.hpp"
+#include "orbweaver/model/recorded.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 
 namespace orbweaver::systems {
 
 namespace {
 
-using ad::Recorded;
+using model::Recorded;
 using Numbers = std::vector<Recorded>;
 
 /// The rows of a square matrix in the order in which elimination in double precision takes them.
@@ -42,7 +44,7 @@ Numbers solved(std::vector<Numbers> left, Numbers right, const std::vector<std::
   return x;
 }
 
-/// While it is built, and used, all Recorded numbers are on one tape.
+/// While it is built, and used, all Recorded numbers are in one graph.
 class Reduction {
  public:
   Reduction(const System& whole, const Formulas& plain, const LinearQuantities& linear, const Chart& chart)
@@ -75,8 +77,8 @@ class Reduction {
   [[nodiscard]] Formulas formulas() {
     Formulas out = _plain;
     out.dimension = static_cast<int>(_n);
-    const Numbers field = on_tape(_plain.field);
-    const Numbers variations = on_tape(_plain.variations);
+    const Numbers field = nodes_of(_plain.field);
+    const Numbers variations = nodes_of(_plain.variations);
     out.field.clear();
     out.variations.clear();
     for (const Recorded& rate : rates([&](std::size_t i) { return field[i]; })) out.field.push_back(rate.node());
@@ -89,8 +91,8 @@ class Reduction {
     out.conserved_gradients.clear();
     for (const int other : _chart.others) {
       const auto q = static_cast<std::size_t>(other);
-      out.conserved.push_back(on_tape({_plain.conserved[q]}).front().node());
-      const Numbers slopes = on_tape(_plain.conserved_gradients[q]);
+      out.conserved.push_back(nodes_of({_plain.conserved[q]}).front().node());
+      const Numbers slopes = nodes_of(_plain.conserved_gradients[q]);
       Numbers by_frame;
       for (std::size_t c = 0; c < _n; ++c) {
         Recorded sum = slopes[_chart.kept[c]];
@@ -100,7 +102,7 @@ class Reduction {
       std::vector<int>& gradient = out.conserved_gradients.emplace_back();
       for (const Recorded& slope : straightened_gradient(by_frame)) gradient.push_back(slope.node());
     }
-    out.tape = _recording.tape();
+    out.graph = _recording.graph();
     return out;
   }
 
@@ -108,8 +110,8 @@ class Reduction {
   [[nodiscard]] std::size_t quantities() const { return _linear.quantities.size(); }
   [[nodiscard]] std::size_t redundant(std::size_t e) const { return static_cast<std::size_t>(_linear.redundant[e]); }
 
-  [[nodiscard]] Numbers on_tape(const std::vector<int>& nodes) const {
-    return ad::evaluate<Recorded>(_plain.tape, nodes, _inputs, _parameters);
+  [[nodiscard]] Numbers nodes_of(const std::vector<int>& nodes) const {
+    return model::evaluate<Recorded>(_plain.graph, nodes, _inputs, _parameters);
   }
 
   /// With those at 0 the quantities lack what they are to make up for.
@@ -118,13 +120,13 @@ class Reduction {
     Numbers missing;
     for (const int quantity : _linear.quantities) {
       const auto q = static_cast<std::size_t>(quantity);
-      gradients.push_back(on_tape(_plain.conserved_gradients[q]));
+      gradients.push_back(nodes_of(_plain.conserved_gradients[q]));
       const std::string& name = whole.structure().conserved[q];
       const auto held = std::find(_plain.parameters.begin(), _plain.parameters.end(), name);
       const Recorded value = held == _plain.parameters.end()
                                  ? Recorded(0.0)
                                  : _parameters[static_cast<std::size_t>(held - _plain.parameters.begin())];
-      missing.push_back(value - on_tape({_plain.conserved[q]}).front());
+      missing.push_back(value - nodes_of({_plain.conserved[q]}).front());
       Numbers& row = square.emplace_back();
       for (std::size_t e = 0; e < quantities(); ++e) row.push_back(gradients.back()[redundant(e)]);
     }
@@ -190,7 +192,7 @@ class Reduction {
   const LinearQuantities& _linear;
   const Chart& _chart;
   std::size_t _n, _d;
-  ad::Recording _recording;
+  model::Recording _recording;
   Numbers _parameters, _inputs;
   std::vector<Numbers> _follows;  // d redundant e / d y_c
 };

@@ -6,7 +6,7 @@
 
 namespace orbweaver::systems {
 
-/// The formulas of a reduced system from those of the whole one. Gradients are taken from the tape, so that the
+/// The formulas of a reduced system from those of the whole one. Gradients are taken from the graph, so that the
 /// redundant coordinates have as many digits as are asked for.
 [[nodiscard]] Formulas reduced_formulas(const System& whole, const Formulas& plain, const LinearQuantities& linear,
                                         const Chart& chart);

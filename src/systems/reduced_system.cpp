@@ -9,8 +9,9 @@
 #include <fmt/format.h>
 
 #include "linear_quantities.hpp"
-#include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/derivatives.hpp"
+#include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/model/linearized_formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
@@ -223,21 +224,35 @@ class ReducedSystem final : public System, public QuadSystem, public FormulaSyst
   /// d (value - Q) / d parameter at node j of the whole system's states.
   [[nodiscard]] VectorXd values_by(const std::string& name, std::size_t nodes, std::size_t j,
                                    const std::vector<double>& states) const {
-    using S = ad::First<1, double>;
     const Formulas& plain = whole_formulas();
-    std::vector<S> inputs, parameters;
-    for (std::size_t i = 0; i < whole_size(); ++i) inputs.push_back(S(states[i * nodes + j]));
-    for (std::size_t p = 0; p < plain.parameters.size(); ++p)
-      parameters.push_back(plain.parameters[p] == name ? S::variable(plain.values[p], 0) : S(plain.values[p]));
-    VectorXd slopes(static_cast<Index>(_linear.quantities.size()));
-    for (std::size_t a = 0; a < _linear.quantities.size(); ++a) {
-      const auto q = static_cast<std::size_t>(_linear.quantities[a]);
-      const std::vector<int> nodes_of{plain.conserved[q]};
-      const double own = ad::evaluate<S>(plain.tape, nodes_of, inputs, parameters).front().derivatives[0];
-      slopes(static_cast<Index>(a)) = (_whole->structure().conserved[q] == name ? 1.0 : 0.0) - own;
+    Slopes& slopes = _slopes[name];
+    if (slopes.outputs.empty()) {
+      slopes.graph = plain.graph;
+      model::Direction direction;
+      for (const std::string& parameter : plain.parameters)
+        direction.parameters.push_back(parameter == name ? slopes.graph.constant(1.0) : -1);
+      for (const int q : _linear.quantities) slopes.outputs.push_back(plain.conserved[static_cast<std::size_t>(q)]);
+      slopes.outputs = model::derivatives_along(slopes.graph, slopes.outputs, direction);
+      for (int& slope : slopes.outputs)
+        if (slope < 0) slope = slopes.graph.constant(0.0);
     }
-    return slopes;
+    std::vector<double> inputs;
+    for (std::size_t i = 0; i < whole_size(); ++i) inputs.push_back(states[i * nodes + j]);
+    const std::vector<double> own =
+        model::evaluate<double>(slopes.graph, slopes.outputs, inputs, std::span<const double>(plain.values));
+    VectorXd values(static_cast<Index>(own.size()));
+    for (std::size_t a = 0; a < own.size(); ++a) {
+      const auto q = static_cast<std::size_t>(_linear.quantities[a]);
+      values(static_cast<Index>(a)) = (_whole->structure().conserved[q] == name ? 1.0 : 0.0) - own[a];
+    }
+    return values;
   }
+
+  /// d Q / d parameter of the quantities taken out.
+  struct Slopes {
+    model::Graph graph;
+    std::vector<int> outputs;
+  };
 
   std::shared_ptr<const System> _whole;
   LinearQuantities _linear;
@@ -249,6 +264,7 @@ class ReducedSystem final : public System, public QuadSystem, public FormulaSyst
   // Recorded when they are first asked for.
   mutable std::unique_ptr<const Formulas> _plain;  // of the whole system
   mutable std::unique_ptr<const Formulas> _formulas;
+  mutable std::map<std::string, Slopes> _slopes;
 };
 
 const ReducedSystem& as_reduced(const System& system) {

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/evaluate.hpp"
+#include "orbweaver/model/recorded.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 
@@ -162,10 +164,10 @@ class ScaledFormulaSystem final : public ScaledQuadSystem, public FormulaSystem 
 
   // Scales stand as factors and divisors of their own, so that nothing is rounded where digits are many.
   [[nodiscard]] Formulas formulas() const override {
-    using ad::Recorded;
+    using model::Recorded;
     Formulas formulas = dynamic_cast<const FormulaSystem&>(system()).formulas();
-    const ad::Tape plain = formulas.tape;
-    ad::Recording recording;
+    const model::Graph plain = formulas.graph;
+    model::Recording recording;
     std::vector<Recorded> inputs;
     for (std::size_t n = 0; n < size() * (1 + size()); ++n)
       inputs.push_back(recording.input(static_cast<int>(n)) *
@@ -174,7 +176,7 @@ class ScaledFormulaSystem final : public ScaledQuadSystem, public FormulaSystem 
     for (std::size_t n = 0; n < formulas.parameters.size(); ++n)
       parameters.push_back(recording.parameter(static_cast<int>(n)));
     const auto told = [&](std::vector<int>& nodes, const auto& scale) {
-      std::vector<Recorded> values = ad::evaluate<Recorded>(plain, nodes, inputs, parameters);
+      std::vector<Recorded> values = model::evaluate<Recorded>(plain, nodes, inputs, parameters);
       for (std::size_t n = 0; n < values.size(); ++n) nodes[n] = scale(n, values[n]).node();
     };
     told(formulas.field, [&](std::size_t n, Recorded f) { return f * scales().time / scales().coordinate(n); });
@@ -188,7 +190,7 @@ class ScaledFormulaSystem final : public ScaledQuadSystem, public FormulaSystem 
       told(formulas.conserved_gradients[k],
            [&](std::size_t n, Recorded slope) { return slope * scales().coordinate(n) / unit; });
     }
-    formulas.tape = recording.tape();
+    formulas.graph = recording.graph();
     return formulas;
   }
 };

@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/evaluate.hpp"
+#include "orbweaver/model/recorded.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 
@@ -95,17 +97,17 @@ class WithTotals final : public System, public QuadSystem, public FormulaSystem 
   }
 
   [[nodiscard]] Formulas formulas() const override {
-    using ad::Recorded;
+    using model::Recorded;
     Formulas formulas = dynamic_cast<const FormulaSystem&>(*_system).formulas();
-    const ad::Tape plain = formulas.tape;
+    const model::Graph plain = formulas.graph;
     const auto d = static_cast<std::size_t>(dimension());
-    ad::Recording recording;
+    model::Recording recording;
     std::vector<Recorded> inputs, parameters;
     for (std::size_t n = 0; n < d * (1 + d); ++n) inputs.push_back(recording.input(static_cast<int>(n)));
     for (std::size_t n = 0; n < formulas.parameters.size(); ++n)
       parameters.push_back(recording.parameter(static_cast<int>(n)));
     const auto copy = [&](std::vector<int>& nodes) {
-      const std::vector<Recorded> values = ad::evaluate<Recorded>(plain, nodes, inputs, parameters);
+      const std::vector<Recorded> values = model::evaluate<Recorded>(plain, nodes, inputs, parameters);
       for (std::size_t n = 0; n < values.size(); ++n) nodes[n] = values[n].node();
     };
     copy(formulas.field);
@@ -126,7 +128,7 @@ class WithTotals final : public System, public QuadSystem, public FormulaSystem 
       formulas.parameters.push_back(name);
       formulas.values.push_back(_values.at(name));
     }
-    formulas.tape = recording.tape();
+    formulas.graph = recording.graph();
     return formulas;
   }
 

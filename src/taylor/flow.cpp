@@ -51,7 +51,7 @@ int Flow<Real>::order() const {
 
 template <class Real>
 void Flow<Real>::advance(std::vector<Real>& state, const Real& time) {
-  if (!_state) _state = std::make_unique<Series<Real>>(_formulas.tape, _formulas.field, _parameters, order());
+  if (!_state) _state = std::make_unique<Series<Real>>(_formulas.graph, _formulas.field, _parameters, order());
   std::vector<Real> none;
   run(*_state, state, none, time);
 }
@@ -62,7 +62,7 @@ void Flow<Real>::advance(std::vector<Real>& state, std::vector<Real>& transition
   if (!_variational) {
     std::vector<int> outputs = _formulas.field;
     outputs.insert(outputs.end(), _formulas.variations.begin(), _formulas.variations.end());
-    _variational = std::make_unique<Series<Real>>(_formulas.tape, outputs, _parameters, order());
+    _variational = std::make_unique<Series<Real>>(_formulas.graph, outputs, _parameters, order());
   }
   run(*_variational, state, transitions, time);
 }
@@ -128,7 +128,7 @@ std::vector<ad::Lanes> in_all_lanes(const std::vector<double>& values) { return 
 ManyFlows::ManyFlows(const systems::Formulas& formulas, const FlowOptions& options)
     : _options(options),
       _dimension(static_cast<std::size_t>(formulas.dimension)),
-      _series(std::make_unique<Series<ad::Lanes>>(formulas.tape, formulas.field, in_all_lanes(formulas.values),
+      _series(std::make_unique<Series<ad::Lanes>>(formulas.graph, formulas.field, in_all_lanes(formulas.values),
                                                   quickest_order(options.digits) + options.extra_order)) {
   core::require(options.scales.empty() || options.scales.size() == _dimension, "one scale a coordinate");
   for (std::size_t i = 0; i < _dimension; ++i) _scales.push_back(options.scales.empty() ? 1.0 : options.scales[i]);

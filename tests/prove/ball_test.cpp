@@ -56,7 +56,7 @@ TEST(Ball, KeepsItsTextToTheLastBit) {
   EXPECT_THROW(static_cast<void>(Ball::of_exact_text("1 0 1 fffffffffffffff")), core::InputError);
 }
 
-// The square root of a rectangle about i lies off the cut; of one about -1 it meets it, as do powers and logarithms.
+// The square root of a rectangle about i lies off the cut; of one about -1 it meets it, as does the logarithm.
 TEST(ComplexBall, IsNotFiniteOnACut) {
   const Ball half = Ball::around_zero(Ball(0.5));
   const ComplexBall about_i(half, half + Ball(1.0));
@@ -64,9 +64,7 @@ TEST(ComplexBall, IsNotFiniteOnACut) {
   for (const auto& [value, finite] : {std::pair{about_i, true}, std::pair{about_minus_one, false}}) {
     EXPECT_EQ(sqrt(value).is_finite(), finite);
     EXPECT_EQ(log(value).is_finite(), finite);
-    EXPECT_EQ(pow(value, -1.5).is_finite(), finite);
   }
-  EXPECT_TRUE(pow(about_minus_one, -2.0).is_finite());
   EXPECT_FALSE((ComplexBall(1.0) / ComplexBall(half, half)).is_finite());
   EXPECT_FALSE(asin(about_i).is_finite());
   EXPECT_FALSE(acos(about_i).is_finite());

@@ -7,27 +7,27 @@
 
 #include <gmock/gmock.h>
 
-#include "orbweaver/ad/tape.hpp"
+#include "orbweaver/model/recorded.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/systems/registry.hpp"
 
 namespace orbweaver::prove::enclosed_flow_test {
 namespace {
 
-using ad::Recorded;
+using model::Recorded;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 /// x' = f(x) with one coordinate: f and f' are given.
 systems::Formulas formulas_of(const std::function<Recorded(Recorded)>& f,
                               const std::function<Recorded(Recorded)>& slope) {
-  ad::Recording recording;
+  model::Recording recording;
   systems::Formulas formulas;
   formulas.dimension = 1;
   const Recorded x = recording.input(0);
   formulas.field = {f(x).node()};
   formulas.variations = {(slope(x) * recording.input(1)).node()};
-  formulas.tape = recording.tape();
+  formulas.graph = recording.graph();
   return formulas;
 }
 

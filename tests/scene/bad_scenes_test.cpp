@@ -11,7 +11,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/registry.hpp"
-#include "suggest.hpp"
+#include "orbweaver/document/suggest.hpp"
 
 // bad/messages.txt holds one line a scene of bad/: the whole message, which begins with the scene's file name;
 // <systems> stands for the names of all systems.
@@ -37,7 +37,7 @@ std::map<std::string, std::string> expected_messages() {
   std::ifstream stream(folder / "messages.txt");
   for (std::string line; std::getline(stream, line);) {
     if (const auto place = line.find(all_systems); place != std::string::npos)
-      line.replace(place, all_systems.size(), scene::alternatives(orbweaver::systems::system_names()));
+      line.replace(place, all_systems.size(), document::alternatives(orbweaver::systems::system_names()));
     messages[line.substr(0, line.find(':'))] = line;
   }
   return messages;

@@ -1,4 +1,4 @@
-#include "document.hpp"
+#include "orbweaver/document/document.hpp"
 
 #include <ctime>
 #include <functional>
@@ -14,13 +14,14 @@
 namespace document_test {
 namespace {
 
+namespace document = orbweaver::document;
 namespace scene = orbweaver::scene;
 using namespace std::string_literals;
 using testing::HasSubstr;
 
 std::string refusal(const std::string& text) {
   try {
-    static_cast<void>(scene::parse_document(text, "text.yaml", true));
+    static_cast<void>(document::parse_document(text, "text.yaml", true));
   } catch (const orbweaver::core::InputError& error) {
     return error.what();
   }
@@ -42,22 +43,22 @@ TEST(Document, AStrayCommaIsRefusedAndMakesNoDocumentsForEver) {
 }
 
 TEST(Document, OneDocumentMayHaveItsMarks) {
-  EXPECT_EQ(scene::parse_document("---\na: 1\n...\n", "text.yaml", true)["a"].Scalar(), "1");
-  EXPECT_TRUE(scene::parse_document("# a comment\n", "text.yaml", true).IsNull());
-  EXPECT_TRUE(scene::parse_document("", "text.yaml", true).IsNull());
+  EXPECT_EQ(document::parse_document("---\na: 1\n...\n", "text.yaml", true)["a"].Scalar(), "1");
+  EXPECT_TRUE(document::parse_document("# a comment\n", "text.yaml", true).IsNull());
+  EXPECT_TRUE(document::parse_document("", "text.yaml", true).IsNull());
 }
 
 TEST(Document, NodesAreCountedThroughAliases) {
   std::string bomb = "a0: &a0 [x, x]\n";
   for (int n = 1; n < 20; ++n) bomb += fmt::format("a{0}: &a{0} [*a{1}, *a{1}]\n", n, n - 1);
   EXPECT_THAT(refusal(bomb), HasSubstr("expected at most 20000 values"));
-  EXPECT_EQ(refusal(fmt::format("[{}]", repeated("1,", scene::most_nodes - 1))), "accepted");
-  EXPECT_THAT(refusal(fmt::format("[{}]", repeated("1,", scene::most_nodes))),
+  EXPECT_EQ(refusal(fmt::format("[{}]", repeated("1,", document::most_nodes - 1))), "accepted");
+  EXPECT_THAT(refusal(fmt::format("[{}]", repeated("1,", document::most_nodes))),
               HasSubstr("expected at most 20000 values"));
 }
 
 TEST(Document, LevelsAreCountedThroughAliases) {
-  const std::size_t most = scene::most_levels;
+  const std::size_t most = document::most_levels;
   EXPECT_EQ(refusal(repeated("[", most) + repeated("]", most)), "accepted");
   EXPECT_THAT(refusal(repeated("[", most + 1) + repeated("]", most + 1)), HasSubstr("at most 32 lists or maps"));
   std::string chain = "[&a0 []";

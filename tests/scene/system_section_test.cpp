@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "document.hpp"
+#include "orbweaver/document/document.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::scene::system_section_test {

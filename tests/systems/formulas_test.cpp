@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 #include "orbweaver/systems/system.hpp"
@@ -14,7 +15,7 @@
 namespace orbweaver::systems::formulas_test {
 namespace {
 
-/// A state and a matrix V as the tape's inputs.
+/// A state and a matrix V as the graph's inputs.
 std::vector<double> inputs_of(const std::vector<double>& z, const std::vector<double>& v) {
   std::vector<double> inputs = z;
   inputs.insert(inputs.end(), v.begin(), v.end());
@@ -35,7 +36,7 @@ void expect_formulas_of(const System& system, const std::vector<double>& z, cons
   for (std::size_t n = 0; n < v.size(); ++n) v[n] = 0.3 + 0.1 * static_cast<double>(n * n % 7);
   const std::vector<double> inputs = inputs_of(z, v);
   const auto values = [&](const std::vector<int>& nodes) {
-    return ad::evaluate<double>(formulas.tape, nodes, inputs, formulas.values);
+    return model::evaluate<double>(formulas.graph, nodes, inputs, formulas.values);
   };
   std::vector<double> f(d);
   std::vector<double> jacobian(d * d);

@@ -12,6 +12,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -192,12 +193,12 @@ TEST(ReducedSystem, FormulasAreThoseOfItsField) {
       const Formulas formulas = dynamic_cast<const FormulaSystem&>(*system).formulas();
       ASSERT_EQ(formulas.conserved.size(), 1U);
       const std::vector<double> inputs(y), parameters(formulas.values);
-      const std::vector<double> energy = ad::evaluate<double>(formulas.tape, formulas.conserved, inputs, parameters);
+      const std::vector<double> energy = model::evaluate<double>(formulas.graph, formulas.conserved, inputs, parameters);
       EXPECT_NEAR(energy.front(), system->conserved(0, y), 1e-14 * (1.0 + std::abs(energy.front())));
       VectorXd gradient(system->dimension());
       system->conserved_gradient(0, y, {gradient.data(), y.size()});
       const std::vector<double> slopes =
-          ad::evaluate<double>(formulas.tape, formulas.conserved_gradients.front(), inputs, parameters);
+          model::evaluate<double>(formulas.graph, formulas.conserved_gradients.front(), inputs, parameters);
       for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(slopes[i], gradient(static_cast<Eigen::Index>(i)), 1e-13);
     }
   // C turns by 120 degrees in both planes.

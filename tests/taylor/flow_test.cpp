@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -86,7 +87,7 @@ TEST(Flow, CarriesTransitionsAndKeepsTheEnergy) {
     std::vector<Extended> transitions = identity(4);
     flow.advance(end, transitions, Extended(0.7));
     const auto energy = [&](const std::vector<Extended>& z) {
-      return ad::evaluate<Extended>(formulas.tape, formulas.conserved, z, parameters).front();
+      return model::evaluate<Extended>(formulas.graph, formulas.conserved, z, parameters).front();
     };
     EXPECT_LT(numerics::log10_abs(energy(end) - energy(start)), -38.0) << name;
     const Extended h = numerics::extended_of("1e-12");
@@ -112,7 +113,7 @@ TEST(Flow, ReadsConstantsExactly) {
   const WorkingDigits working(50);
   const systems::Formulas formulas = formulas_of("henon_heiles");
   const std::vector<Extended> z{Extended(0), Extended(1), Extended(0), Extended(0)};
-  const Extended energy = ad::evaluate<Extended>(formulas.tape, formulas.conserved, z, {}).front();
+  const Extended energy = model::evaluate<Extended>(formulas.graph, formulas.conserved, z, {}).front();
   EXPECT_LT(numerics::log10_abs(energy - Extended(1) / 6), -49.0);
 }
 

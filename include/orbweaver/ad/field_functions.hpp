@@ -2,7 +2,7 @@
 
 #include "orbweaver/ad/dual.hpp"
 #include "orbweaver/ad/lanes.hpp"
-#include "orbweaver/ad/tape.hpp"
+#include "orbweaver/model/recorded.hpp"
 
 /// What the field of a plugin may do beside what its scalars have, and what it may not: that is refused with its reason
 /// where it is compiled. Orbits are followed by derivatives, which must be there everywhere.

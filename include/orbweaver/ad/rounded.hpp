@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace orbweaver::ad {
 
@@ -43,8 +44,12 @@ class Rounded {
     return function(std::acos(x._value), 1.0 / std::sqrt((1.0 - x._value) * (1.0 + x._value)), x);
   }
   friend Rounded atan(Rounded x) { return function(std::atan(x._value), 1.0 / (1.0 + x._value * x._value), x); }
-  friend Rounded pow(Rounded x, double exponent) {
-    return function(std::pow(x._value, exponent), exponent * std::pow(x._value, exponent - 1.0), x);
+  friend Rounded tanh(Rounded x) {
+    const double tangent = std::tanh(x._value);
+    return function(tangent, 1.0 - tangent * tangent, x);
+  }
+  friend Rounded erf(Rounded x) {
+    return function(std::erf(x._value), 2.0 * std::numbers::inv_sqrtpi * std::exp(-x._value * x._value), x);
   }
 
  private:

@@ -22,10 +22,6 @@ struct InRegisters {
   static void negate(Real& out, Real a) { out = -a; }
   static void multiply(Real& out, Real a, long k) { out = a * static_cast<double>(k); }
   static void divide(Real& out, Real a, long k) { out = a / static_cast<double>(k); }
-  static Real power(Real x, double exponent) {
-    using std::pow;
-    return pow(x, exponent);
-  }
 
   /// Sums of products a_0 b_0, a_1 b_-1, ... of two arrays, the second one run through backwards.
   class Sum {
@@ -73,7 +69,6 @@ struct Arithmetic<numerics::Extended> {
   static void divide(Real& out, const Real& a, long k) { mpfr_div_si(raw(out), raw(a), k, MPFR_RNDN); }
   static bool is_zero(const Real& x) { return mpfr_zero_p(raw(x)) != 0; }
   static bool is_finite(const Real& x) { return mpfr_number_p(raw(x)) != 0; }
-  static Real power(const Real& x, double exponent) { return pow(x, Real(exponent)); }
   static double to_double(const Real& x) { return mpfr_get_d(raw(x), MPFR_RNDN); }
 
   class Sum {

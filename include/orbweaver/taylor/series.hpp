@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "orbweaver/ad/tape.hpp"
+#include "orbweaver/model/graph.hpp"
 #include "orbweaver/taylor/arithmetic.hpp"
 
 namespace orbweaver::taylor {
@@ -14,17 +14,17 @@ namespace orbweaver::taylor {
 template <class Real>
 class Series {
   using A = Arithmetic<Real>;
-  using Operation = ad::Operation;
+  using Operation = model::Operation;
 
  public:
-  Series(const ad::Tape& tape, const std::vector<int>& outputs, const std::vector<Real>& parameters, int order)
+  Series(const model::Graph& graph, const std::vector<int>& outputs, const std::vector<Real>& parameters, int order)
       : _order(order), _size(outputs.size()) {
-    select(tape, outputs);
+    select(graph, outputs);
     _coefficients.resize(_nodes.size() * width());
     _derived.resize(_nodes.size());
     _input.assign(_size, -1);
     for (std::size_t n = 0; n < _nodes.size(); ++n) {
-      ad::Tape::Node& node = _nodes[n];
+      model::Node& node = _nodes[n];
       if (node.operation == Operation::input) _input[static_cast<std::size_t>(node.first)] = static_cast<int>(n);
       if (node.operation == Operation::parameter) {
         A::set(at(n, 0), parameters[static_cast<std::size_t>(node.first)]);
@@ -82,22 +82,22 @@ class Series {
   [[nodiscard]] bool constant(int n) const { return _is_constant[static_cast<std::size_t>(n)]; }
 
   /// Keeps what the outputs need, renumbered.
-  void select(const ad::Tape& tape, const std::vector<int>& outputs) {
-    std::vector<bool> needed(tape.nodes.size(), false);
+  void select(const model::Graph& graph, const std::vector<int>& outputs) {
+    std::vector<bool> needed(graph.nodes().size(), false);
     for (const int output : outputs) needed[static_cast<std::size_t>(output)] = true;
-    for (std::size_t n = tape.nodes.size(); n-- > 0;) {
+    for (std::size_t n = graph.nodes().size(); n-- > 0;) {
       if (!needed[n]) continue;
-      const ad::Tape::Node& node = tape.nodes[n];
-      if (node.operation == Operation::sine) needed[n + 1] = true;
-      if (node.operation == Operation::cosine) needed[n - 1] = true;
+      const model::Node& node = graph.nodes()[n];
+      if (node.operation == Operation::sine || node.operation == Operation::tanh) needed[n + 1] = true;
+      if (node.operation == Operation::cosine || node.operation == Operation::slope) needed[n - 1] = true;
       if (node.operation == Operation::input || node.operation == Operation::parameter) continue;
       if (node.first >= 0) needed[static_cast<std::size_t>(node.first)] = true;
       if (node.second >= 0) needed[static_cast<std::size_t>(node.second)] = true;
     }
-    std::vector<int> place(tape.nodes.size(), -1);
-    for (std::size_t n = 0; n < tape.nodes.size(); ++n) {
+    std::vector<int> place(graph.nodes().size(), -1);
+    for (std::size_t n = 0; n < graph.nodes().size(); ++n) {
       if (!needed[n]) continue;
-      ad::Tape::Node node = tape.nodes[n];
+      model::Node node = graph.nodes()[n];
       const bool is_leaf = node.operation == Operation::input || node.operation == Operation::parameter;
       if (!is_leaf && node.first >= 0) node.first = place[static_cast<std::size_t>(node.first)];
       if (!is_leaf && node.second >= 0) node.second = place[static_cast<std::size_t>(node.second)];
@@ -109,7 +109,7 @@ class Series {
 
   /// Says whether node n is constant in time, and which operands need k a_k kept.
   void mark(std::size_t n) {
-    const ad::Tape::Node& node = _nodes[n];
+    const model::Node& node = _nodes[n];
     bool is_constant = node.operation != Operation::input;
     if (is_constant && node.operation != Operation::parameter && node.operation != Operation::constant) {
       if (node.first >= 0) is_constant = is_constant && constant(node.first);
@@ -117,8 +117,7 @@ class Series {
     }
     _is_constant.push_back(is_constant);
     const bool integrates = node.operation == Operation::exp || node.operation == Operation::sine ||
-                            node.operation == Operation::log || node.operation == Operation::asin ||
-                            node.operation == Operation::acos || node.operation == Operation::atan;
+                            node.operation == Operation::tanh || node.operation >= Operation::log;
     if (integrates && !is_constant) _derived[static_cast<std::size_t>(node.first)].resize(1);
   }
 
@@ -126,8 +125,8 @@ class Series {
   Real& derived(int a, int k) { return _derived[static_cast<std::size_t>(a)][static_cast<std::size_t>(k)]; }
 
   void compute_first(std::size_t n) {
-    using std::acos, std::asin, std::atan, std::cos, std::exp, std::log, std::sin, std::sqrt;
-    const ad::Tape::Node& node = _nodes[n];
+    using std::acos, std::asin, std::atan, std::cos, std::erf, std::exp, std::log, std::sin, std::sqrt, std::tanh;
+    const model::Node& node = _nodes[n];
     Real& out = at(n, 0);
     switch (node.operation) {
       case Operation::input:
@@ -146,13 +145,19 @@ class Series {
       case Operation::asin: A::set(out, asin(at(node.first, 0))); break;
       case Operation::acos: A::set(out, acos(at(node.first, 0))); break;
       case Operation::atan: A::set(out, atan(at(node.first, 0))); break;
-      case Operation::power: A::set(out, A::power(at(node.first, 0), node.value)); break;
+      case Operation::erf: A::set(out, erf(at(node.first, 0))); break;
+      case Operation::tanh: A::set(out, tanh(at(node.first, 0))); break;
+      case Operation::slope:
+        A::multiply(out, at(static_cast<int>(n) - 1, 0), at(static_cast<int>(n) - 1, 0));
+        A::set(_work, 1.0);
+        A::subtract(out, _work, out);
+        break;
     }
   }
 
   // Knuth, The Art of Computer Programming 2, 4.7; Moore 1966, Interval Analysis, 11.
   void compute(std::size_t n, int k) {
-    const ad::Tape::Node& node = _nodes[n];
+    const model::Node& node = _nodes[n];
     Real& out = at(n, k);
     switch (node.operation) {
       case Operation::input:
@@ -208,15 +213,24 @@ class Series {
         break;
       }
       case Operation::cosine: break;  // with the sine
+      case Operation::tanh:
+        derive(node.first, k);
+        convolve(_derived[static_cast<std::size_t>(node.first)].data(), &at(n + 1, 0), 1, k, k, out);
+        A::divide(out, out, static_cast<long>(k));
+        break;
+      case Operation::slope:  // s = 1 - t^2
+        square(static_cast<int>(n) - 1, k, 0, out);
+        A::negate(out, out);
+        break;
       case Operation::log:
       case Operation::asin:
       case Operation::acos:
       case Operation::atan:
+      case Operation::erf:
         derive(node.first, k);
         convolve(_derived[static_cast<std::size_t>(node.first)].data(), &at(node.second, 0), 1, k, k, out);
         A::divide(out, out, static_cast<long>(k));
         break;
-      case Operation::power: power(n, k); break;
     }
   }
 
@@ -241,7 +255,7 @@ class Series {
 
   /// c_k = (a_k - sum_{j = 1}^k b_j c_{k-j}) / b_0.
   void divide(std::size_t n, int k) {
-    const ad::Tape::Node& node = _nodes[n];
+    const model::Node& node = _nodes[n];
     Real& out = at(n, k);
     if (constant(node.second)) {
       A::divide(out, at(node.first, k), at(node.second, 0));
@@ -253,25 +267,9 @@ class Series {
     A::divide(out, _sum.value(), at(node.second, 0));
   }
 
-  /// c_k = sum_{j = 1}^k (j e - (k - j)) a_j c_{k-j} / (k a_0).
-  void power(std::size_t n, int k) {
-    const ad::Tape::Node& node = _nodes[n];
-    _sum.clear();
-    for (int j = 1; j <= k; ++j) {
-      A::set(_work, node.value);
-      A::multiply(_work, _work, static_cast<long>(j));
-      A::set(_whole, static_cast<double>(k - j));
-      A::subtract(_work, _work, _whole);
-      A::multiply(_work, _work, at(node.first, j));
-      _sum.add_products(&_work, &at(n, k - j), 1);
-    }
-    A::divide(_work, _sum.value(), static_cast<long>(k));
-    A::divide(at(n, k), _work, at(node.first, 0));
-  }
-
   int _order;
   std::size_t _size;
-  std::vector<ad::Tape::Node> _nodes;
+  std::vector<model::Node> _nodes;
   std::vector<bool> _is_constant;
   std::vector<int> _outputs;  // nodes
   std::vector<int> _input;    // of each component, the node that is it; -1: none depends on it
@@ -280,7 +278,6 @@ class Series {
   std::vector<Real> _own;
   typename A::Sum _sum;
   Real _work = Real();
-  Real _whole = Real();
 };
 
 }  // namespace orbweaver::taylor

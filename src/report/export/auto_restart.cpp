@@ -269,7 +269,7 @@ std::string auto_equations(const archive::Archive& atlas) {
   if (conserves)
     outputs.insert(outputs.end(), formulas.conserved_gradients.front().begin(),
                    formulas.conserved_gradients.front().end());
-  const systems::FortranCode field = systems::fortran_code(formulas.tape, outputs, input, parameter);
+  const systems::FortranCode field = systems::fortran_code(formulas.graph, outputs, input, parameter);
   std::string text = fmt::format("! {}, for AUTO-07p, by Orbweaver: restart from its s.NAME with IPS=2, JAC=0.\n",
                                  system->info().title);
   for (const std::string& name : atlas.header().parameter_names)
@@ -297,7 +297,7 @@ std::string auto_equations(const archive::Archive& atlas) {
       "SUBROUTINE PVLS(NDIM,U,PAR)\n  IMPLICIT NONE\n  INTEGER, INTENT(IN) :: NDIM\n"
       "  DOUBLE PRECISION, INTENT(IN) :: U(NDIM)\n  DOUBLE PRECISION, INTENT(INOUT) :: PAR(*)\n";
   if (conserves) {
-    const systems::FortranCode energy = systems::fortran_code(formulas.tape, formulas.conserved, input, parameter);
+    const systems::FortranCode energy = systems::fortran_code(formulas.graph, formulas.conserved, input, parameter);
     text += body_of(energy) + fmt::format("  PAR({})={}\n", energy_number(atlas), energy.results.front());
   }
   return text +

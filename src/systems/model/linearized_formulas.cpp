@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/evaluate.hpp"
 
 namespace orbweaver::systems {
 
@@ -17,7 +18,7 @@ void linearize_formulas(const Formulas& formulas, const numerics::QuadVector& z,
   const std::vector<Quad> parameters(formulas.values.begin(), formulas.values.end());
   std::vector<int> outputs = formulas.field;
   outputs.insert(outputs.end(), formulas.variations.begin(), formulas.variations.end());
-  const std::vector<Quad> values = ad::evaluate<Quad>(formulas.tape, outputs, inputs, parameters);
+  const std::vector<Quad> values = model::evaluate<Quad>(formulas.graph, outputs, inputs, parameters);
 
   f.resize(d);
   jacobian.resize(d, d);

@@ -10,6 +10,7 @@
 
 #include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/recorded.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/model/checks.hpp"
 #include "orbweaver/systems/model/complex_system.hpp"
@@ -117,8 +118,8 @@ class SizedSystem final : public ComplexSystem, public QuadSystem, public Formul
   }
 
   [[nodiscard]] Formulas formulas() const override {
-    using S = ad::First<1, ad::Recorded>;
-    ad::Recording recording;
+    using S = ad::First<1, model::Recorded>;
+    model::Recording recording;
     Formulas formulas;
     formulas.dimension = dimension();
     BoundTo<S> bound{{}, _bound.effects, {}};
@@ -157,7 +158,7 @@ class SizedSystem final : public ComplexSystem, public QuadSystem, public Formul
         gradient.push_back(quantity.derivatives[0].node());
       }
     }
-    formulas.tape = recording.tape();
+    formulas.graph = recording.graph();
     return formulas;
   }
 

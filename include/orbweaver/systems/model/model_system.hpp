@@ -15,6 +15,7 @@
 
 #include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/recorded.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/model/checks.hpp"
 #include "orbweaver/systems/model/complex_system.hpp"
@@ -99,9 +100,9 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
   }
 
   [[nodiscard]] Formulas formulas() const override {
-    using S = ad::Recorded;
+    using S = model::Recorded;
     using First = ad::First<Model::dimension, S>;
-    ad::Recording recording;
+    model::Recording recording;
     Formulas formulas;
     formulas.dimension = Model::dimension;
     BoundTo<First> bound{{}, _bound.effects, {}};
@@ -133,7 +134,7 @@ class ModelSystem final : public ComplexSystem, public QuadSystem, public Formul
         std::vector<int>& gradient = formulas.conserved_gradients.emplace_back();
         for (const S& derivative : result.gradient) gradient.push_back(derivative.node());
       });
-    formulas.tape = recording.tape();
+    formulas.graph = recording.graph();
     return formulas;
   }
 

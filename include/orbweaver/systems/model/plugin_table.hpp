@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "orbweaver/ad/lanes.hpp"
-#include "orbweaver/ad/tape.hpp"
+#include "orbweaver/model/graph.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/model/registered.hpp"
 
@@ -19,7 +19,7 @@ inline constexpr std::uint32_t plugin_abi = 1;
 /// depends: they differ between compilers, their options and packages.
 using PluginLayout = std::array<std::uint32_t, 8>;
 inline constexpr PluginLayout plugin_layout{sizeof(RegistryLine), sizeof(Bound),        sizeof(ModelInfo),
-                                            sizeof(Structure),    sizeof(Formulas),     sizeof(ad::Tape::Node),
+                                            sizeof(Structure),    sizeof(Formulas),     sizeof(model::Node),
                                             sizeof(ad::Lanes),    EIGEN_MAX_ALIGN_BYTES};
 
 /// What a plugin exports as `orbweaver_plugin`. Its first three members stay as they are in every version.

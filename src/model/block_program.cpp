@@ -1,0 +1,277 @@
+#include "orbweaver/model/block_program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "block_kernels.hpp"
+#include "orbweaver/core/error.hpp"
+
+namespace orbweaver::model {
+
+namespace {
+
+/// States a block: what lies between stays in the first cache, and an operation's dispatch costs little beside it.
+constexpr std::size_t block = 64;
+/// A vector of every width divides it.
+constexpr std::size_t granule = 8;
+
+BlockKernel kernel() {
+#if defined(__x86_64__)
+  switch (vector_bits()) {
+    case 512: return run_in_512_bits;
+    case 256: return run_in_256_bits;
+    default: break;
+  }
+#endif
+  return run_in_128_bits;
+}
+
+bool is_binary(Operation operation) { return operation >= Operation::add && operation <= Operation::divide; }
+
+Step unary(Operation operation) {
+  switch (operation) {
+    case Operation::negate: return Step::negate;
+    case Operation::sqrt: return Step::sqrt;
+    case Operation::exp: return Step::exp;
+    case Operation::sine: return Step::sine;
+    case Operation::cosine: return Step::cosine;
+    case Operation::tanh: return Step::tanh;
+    case Operation::slope: return Step::slope;
+    case Operation::log: return Step::log;
+    case Operation::asin: return Step::asin;
+    case Operation::acos: return Step::acos;
+    case Operation::atan: return Step::atan;
+    case Operation::erf: return Step::erf;
+    default: break;
+  }
+  core::require(false, "an operation of one operand");
+  return Step::copy;
+}
+
+/// Of registers alone, of a register and a scalar, of a scalar and a register.
+struct Forms {
+  Step vv;
+  Step vs;
+  Step sv;
+};
+
+Forms binary(Operation operation) {
+  switch (operation) {
+    case Operation::add: return {Step::add_vv, Step::add_vs, Step::add_vs};
+    case Operation::subtract: return {Step::subtract_vv, Step::subtract_vs, Step::subtract_sv};
+    case Operation::multiply: return {Step::multiply_vv, Step::multiply_vs, Step::multiply_vs};
+    default: return {Step::divide_vv, Step::divide_vs, Step::divide_sv};
+  }
+}
+
+}  // namespace
+
+int vector_bits() {
+  static const int bits = [] {
+    int most = 128;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) most = 256;
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) most = 512;
+#endif
+    const char* const asked = std::getenv("ORBWEAVER_VECTOR_BITS");
+    const std::string given = asked == nullptr ? "" : asked;
+    for (const int one : {128, 256, 512})
+      if (given == std::to_string(one)) most = std::min(most, one);
+    return most;
+  }();
+  return bits;
+}
+
+double far_sine(double x) { return std::sin(x); }
+double far_cosine(double x) { return std::cos(x); }
+double error_function(double x) { return std::erf(x); }
+
+/// Gives nodes their places: scalars to what depends on parameters only, registers to the rest, used again when what
+/// they hold is needed no more.
+class BlockProgram::Compiler {
+ public:
+  Compiler(const Graph& graph, std::span<const int> outputs, BlockProgram& program)
+      : _graph(graph), _program(program), _place(graph.nodes().size(), -1), _moves(graph.nodes().size(), false), _done(_moves) {
+    _needed = needed_for(graph, outputs);
+    for (std::size_t n = 0; n < _needed.size(); ++n)
+      if (_needed[n] && graph.nodes()[n].operation == Operation::slope) _needed[n - 1] = true;
+    place_leaves(outputs.size());
+    place_fixed();
+    place_moving(outputs);
+  }
+
+ private:
+  [[nodiscard]] const Node& node(std::size_t n) const { return _graph.nodes()[n]; }
+  int& place(int n) { return _place[static_cast<std::size_t>(n)]; }
+  [[nodiscard]] bool moves(int n) const { return _moves[static_cast<std::size_t>(n)]; }
+  /// A slope's operand is the tanh before it.
+  [[nodiscard]] int first(std::size_t n) const {
+    return node(n).operation == Operation::slope ? static_cast<int>(n) - 1 : node(n).first;
+  }
+
+  void place_leaves(std::size_t outputs) {
+    for (std::size_t n = 0; n < _needed.size(); ++n) {
+      if (!_needed[n]) continue;
+      const Node& own = node(n);
+      const auto number = static_cast<std::size_t>(own.first);
+      if (own.operation == Operation::input) _program._inputs = std::max(_program._inputs, number + 1);
+      if (own.operation == Operation::parameter) _program._parameters = std::max(_program._parameters, number + 1);
+      if (own.operation != Operation::constant) continue;
+      _place[n] = static_cast<int>(_program._constants.size());
+      _program._constants.push_back(own.value);
+    }
+    _program._outputs = outputs;
+    for (std::size_t n = 0; n < _needed.size(); ++n) {
+      if (!_needed[n]) continue;
+      if (node(n).operation == Operation::input) _place[n] = node(n).first;
+      if (node(n).operation == Operation::parameter)
+        _place[n] = static_cast<int>(_program._constants.size()) + node(n).first;
+      _moves[n] = node(n).operation == Operation::input;
+      if (is_leaf(node(n).operation)) continue;
+      _moves[n] = moves(first(n)) || (is_binary(node(n).operation) && moves(node(n).second));
+    }
+  }
+
+  void place_fixed() {
+    _program._scalars = _program._constants.size() + _program._parameters;
+    for (std::size_t n = 0; n < _needed.size(); ++n) {
+      if (!_needed[n] || _moves[n] || is_leaf(node(n).operation)) continue;
+      _place[n] = static_cast<int>(_program._scalars++);
+      const bool two = is_binary(node(n).operation);
+      _program._fixed.push_back({two ? binary(node(n).operation).vv : unary(node(n).operation), _place[n],
+                                 place(first(n)), two ? place(node(n).second) : 0});
+    }
+  }
+
+  void place_moving(std::span<const int> outputs) {
+    const auto first_output = static_cast<int>(_program._inputs);
+    _registers = first_output + static_cast<int>(outputs.size());
+    std::vector<int> last(_needed.size(), -1);
+    for (std::size_t n = 0; n < _needed.size(); ++n) {
+      if (!_needed[n] || !_moves[n] || is_leaf(node(n).operation)) continue;
+      last[static_cast<std::size_t>(first(n))] = static_cast<int>(n);
+      if (is_binary(node(n).operation)) last[static_cast<std::size_t>(node(n).second)] = static_cast<int>(n);
+    }
+    std::vector<bool> is_output(_needed.size(), false);
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      const auto n = static_cast<std::size_t>(outputs[k]);
+      if (!_moves[n] || is_leaf(node(n).operation) || is_output[n]) continue;
+      is_output[n] = true;
+      _place[n] = first_output + static_cast<int>(k);
+    }
+    const auto give_back = [&](int n, std::size_t at) {
+      const auto number = static_cast<std::size_t>(n);
+      if (last[number] == static_cast<int>(at) && _moves[number] && !is_output[number] && !is_leaf(node(number).operation))
+        _free.push_back(place(n));
+    };
+    for (std::size_t n = 0; n < _needed.size(); ++n) {
+      if (!_needed[n] || !_moves[n] || is_leaf(node(n).operation) || _done[n]) continue;
+      const bool pair = node(n).operation == Operation::sine && n + 1 < _needed.size() && _needed[n + 1];
+      if (_place[n] < 0) _place[n] = register_for();
+      if (pair) {
+        _done[n + 1] = true;
+        if (_place[n + 1] < 0) _place[n + 1] = register_for();
+      }
+      emit(n, pair);
+      give_back(first(n), pair ? n + 1 : n);
+      if (is_binary(node(n).operation) && node(n).second != node(n).first) give_back(node(n).second, n);
+    }
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      const int row = first_output + static_cast<int>(k);
+      const int from = place(outputs[k]);
+      if (!moves(outputs[k]))
+        _program._code.push_back({Step::fill, row, from, 0});
+      else if (from != row)
+        _program._code.push_back({Step::copy, row, from, 0});
+    }
+    _program._registers = static_cast<std::size_t>(_registers);
+  }
+
+  int register_for() {
+    if (_free.empty()) return _registers++;
+    const int place = _free.back();
+    _free.pop_back();
+    return place;
+  }
+
+  void emit(std::size_t n, bool pair) {
+    const int a = first(n);
+    if (pair) {
+      _program._code.push_back({Step::sine_and_cosine, _place[n], place(a), _place[n + 1]});
+    } else if (!is_binary(node(n).operation)) {
+      _program._code.push_back({unary(node(n).operation), _place[n], place(a), 0});
+    } else {
+      const int b = node(n).second;
+      const Forms forms = binary(node(n).operation);
+      const bool commutes = forms.vs == forms.sv;
+      if (moves(a) && moves(b))
+        _program._code.push_back({forms.vv, _place[n], place(a), place(b)});
+      else if (moves(a))
+        _program._code.push_back({forms.vs, _place[n], place(a), place(b)});
+      else if (commutes)
+        _program._code.push_back({forms.vs, _place[n], place(b), place(a)});
+      else
+        _program._code.push_back({forms.sv, _place[n], place(a), place(b)});
+    }
+  }
+
+  const Graph& _graph;
+  BlockProgram& _program;
+  std::vector<bool> _needed;
+  std::vector<int> _place;   // of a node: its scalar, or its register
+  std::vector<bool> _moves;  // with the state
+  std::vector<bool> _done;   // as the second of a pair
+  std::vector<int> _free;
+  int _registers = 0;
+};
+
+BlockProgram::BlockProgram(const Graph& graph, std::span<const int> outputs) { Compiler(graph, outputs, *this); }
+
+std::vector<double> BlockProgram::scalars(std::span<const double> parameters) const {
+  core::require(parameters.size() >= _parameters, "a value for every parameter of a graph");
+  std::vector<double> values(_constants);
+  values.insert(values.end(), parameters.begin(), parameters.begin() + static_cast<std::ptrdiff_t>(_parameters));
+  values.resize(_scalars);
+  if (_fixed.empty()) return values;
+  std::vector<double> space(_scalars * granule);
+  std::vector<double*> registers(_scalars);
+  for (std::size_t n = 0; n < _scalars; ++n) {
+    registers[n] = space.data() + n * granule;
+    std::fill_n(registers[n], granule, values[n]);
+  }
+  kernel()(_fixed.data(), _fixed.size(), registers.data(), values.data(), granule);
+  for (std::size_t n = 0; n < _scalars; ++n) values[n] = *registers[n];
+  return values;
+}
+
+void BlockProgram::run(std::span<const double> scalars, std::size_t states, std::span<const double* const> inputs,
+                       std::span<double* const> outputs) const {
+  core::require(inputs.size() >= _inputs && outputs.size() == _outputs && scalars.size() == _scalars,
+                "a program of blocks is given what it asks for");
+  const BlockKernel run_block = kernel();
+  thread_local std::vector<double> space;
+  thread_local std::vector<double*> registers;
+  if (space.size() < _registers * block) space.resize(_registers * block);
+  registers.resize(std::max(registers.size(), _registers));
+  for (std::size_t n = 0; n < _registers; ++n) registers[n] = space.data() + n * block;
+  std::size_t j = 0;
+  for (; j + block <= states; j += block) {
+    for (std::size_t i = 0; i < _inputs; ++i) registers[i] = const_cast<double*>(inputs[i]) + j;
+    for (std::size_t k = 0; k < _outputs; ++k) registers[_inputs + k] = outputs[k] + j;
+    run_block(_code.data(), _code.size(), registers.data(), scalars.data(), block);
+  }
+  if (j == states) return;
+  const std::size_t count = states - j;
+  const std::size_t padded = (count + granule - 1) / granule * granule;
+  for (std::size_t n = 0; n < _inputs + _outputs; ++n) registers[n] = space.data() + n * block;
+  for (std::size_t i = 0; i < _inputs; ++i) {
+    std::copy_n(inputs[i] + j, count, registers[i]);
+    std::fill(registers[i] + count, registers[i] + padded, inputs[i][states - 1]);
+  }
+  run_block(_code.data(), _code.size(), registers.data(), scalars.data(), padded);
+  for (std::size_t k = 0; k < _outputs; ++k) std::copy_n(registers[_inputs + k], count, outputs[k] + j);
+}
+
+}  // namespace orbweaver::model
