@@ -32,8 +32,6 @@ namespace fs = std::filesystem;
 
 struct BuildSystemOptions {
   fs::path source;
-  std::string model;
-  std::vector<std::string> effects;
   fs::path output;
 };
 
@@ -82,28 +80,12 @@ std::vector<fs::path> sources_of(const fs::path& source, std::vector<std::string
   return files;
 }
 
-/// The source of a model of the program with effects that it is not compiled with.
-std::string combination(const BuildSystemOptions& options) {
-  return fmt::format(
-      "#include \"{}.hpp\"\n\n#include \"orbweaver/systems/plugin.hpp\"\n\nnamespace orbweaver::systems {{\nusing "
-      "Combination = {};\n}}\n\nORBWEAVER_SYSTEMS(orbweaver::systems::Combination);\n",
-      options.model, systems::type_with_effects(options.model, options.effects));
-}
-
 int run(const BuildSystemOptions& options, const Invocation& invocation) {
   if (!invocation.petsc_options.empty())
     throw core::InputError("build-system takes no PETSc options: drop `--` and what follows");
-  if (options.source.empty() == options.model.empty())
-    throw core::InputError("expected either the source of a model, or --model and --effects");
-  if (options.source.empty() == false && !options.effects.empty())
-    throw core::InputError("--effects are those of a --model of the program; a source names its own");
   core::require_output_file(options.output, options.source);
   const core::TemporaryFolder scratch;
-  fs::path source = options.source;
-  if (source.empty()) {
-    source = scratch.path() / "combination.cpp";
-    core::write_file(source, {combination(options)});
-  }
+  const fs::path source = options.source;
   if (const std::string got = core::unreadable_input(source); !got.empty())
     throw core::InputError(
         fmt::format("'{}': expected a source that can be read, got {}; check the path", source.string(), got));
@@ -117,8 +99,8 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
   build.insert(build.end(), {fmt::format("-DORBWEAVER_PLUGIN_SOURCE=\"{}\"", hash),
                              "-DORBWEAVER_PLUGIN_VERSION=\"" ORBWEAVER_VERSION "\"", "-shared", "-fPIC", "-Wl,-z,lazy",
                              source.string(), "-o", unfinished.path().string()});
-  const std::string what = options.model.empty() ? source.string() : "the combination";
-  core::write_line(stderr, fmt::format("compiling {} for all scalars: about half a minute", what));
+  const std::string what = source.string();
+  core::write_line(stderr, fmt::format("compiling {}", what));
   std::vector<std::string> first = words;
   first.insert(first.end(), {"-DORBWEAVER_ONE_SCALAR", "-fsyntax-only", source.string()});
   compile(first, what);
@@ -134,12 +116,9 @@ int run(const BuildSystemOptions& options, const Invocation& invocation) {
 Command make_build_system_command(CLI::App& program) {
   const auto options = std::make_shared<BuildSystemOptions>();
   CLI::App* parser = program.add_subcommand("build-system", "Compile a model of your own into a plugin for scenes");
-  parser->add_option("SOURCE", options->source, "The model's C++ source (docs/your_own_system.md)");
-  parser->add_option("--model", options->model, "Instead of SOURCE: a system of the program, with --effects");
-  parser->add_option("--effects", options->effects, "Its effects: damping,pivot_drive")->delimiter(',');
+  parser->add_option("SOURCE", options->source, "The model's C++ source (docs/your_own_system.md)")->required();
   parser->add_option("-o,--output", options->output, "The plugin to write")->required()->check(named_path());
-  add_examples(*parser, {"orbweaver build-system my_system.cpp -o my_system.so",
-                         "orbweaver build-system --model double_pendulum --effects damping,rod_inertia -o damped.so"});
+  add_examples(*parser, {"orbweaver build-system my_system.cpp -o my_system.so"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

@@ -22,6 +22,7 @@ namespace {
 
 struct SystemsOptions {
   std::string name;
+  bool text = false;
 };
 
 std::string range_text(const systems::Parameter& parameter) {
@@ -49,15 +50,12 @@ std::string scenes_text(const std::string& system, const std::vector<ShippedScen
   return text.empty() ? "  scenes        none\n" : text;
 }
 
-std::string effects_text(const std::string& name, const systems::ModelInfo& info) {
+std::string effects_text(const systems::ModelInfo& info) {
   if (info.effects.empty()) return "  effects       none\n";
   std::string text = "  effects\n";
   for (const systems::Effect& effect : info.effects)
     text += fmt::format("    {}: {}\n{}", effect.name, effect.meaning, parameters_text(effect.parameters, "      "));
-  std::vector<std::string> combinations;
-  for (const std::vector<std::string>& effects : systems::built_effects(name))
-    if (!effects.empty()) combinations.push_back(fmt::format("[{}]", fmt::join(effects, ", ")));
-  return text + fmt::format("  compiled with {}\n", fmt::join(combinations, ", "));
+  return text;
 }
 
 std::string system_text(const std::string& name, const std::vector<ShippedScene>& scenes) {
@@ -70,7 +68,7 @@ std::string system_text(const std::string& name, const std::vector<ShippedScene>
   text += info.parameters.empty()
               ? "  parameters    none\n"
               : "  parameters, with their standard values and ranges\n" + parameters_text(info.parameters, "    ");
-  return text + effects_text(name, info) + scenes_text(name, scenes);
+  return text + effects_text(info) + scenes_text(name, scenes);
 }
 
 int run(const SystemsOptions& options, const Invocation& invocation) {
@@ -78,6 +76,13 @@ int run(const SystemsOptions& options, const Invocation& invocation) {
     throw core::InputError(
         fmt::format("systems: expected no PETSc options, got `{}`; it follows no family, so drop `--` and what follows",
                     fmt::join(invocation.petsc_options, " ")));
+  if (options.text) {
+    if (options.name.empty()) throw core::InputError("systems --text: expected one system, `systems NAME --text`");
+    const std::string text = systems::system_text(options.name);
+    if (text.empty()) throw core::InputError(fmt::format("the system {} is a plugin's and has no text", options.name));
+    print_result(text);
+    return 0;
+  }
   const std::vector<std::string> names =
       options.name.empty() ? systems::system_names() : std::vector<std::string>{options.name};
   const std::vector<ShippedScene> scenes = shipped_scenes();
@@ -100,8 +105,9 @@ Command make_systems_command(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("systems", "Systems, their parameters with units, their effects, and scenes of them");
   parser->add_option("name", options->name, "One system; none: all")->type_name("SYSTEM");
+  parser->add_flag("--text", options->text, "The text of one system, to read and to begin one's own with");
   add_plugin_option(*parser);
-  add_examples(*parser, {"orbweaver systems double_pendulum"});
+  add_examples(*parser, {"orbweaver systems double_pendulum", "orbweaver systems lorenz --text"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }
 

@@ -14,7 +14,7 @@
 #include "explained.hpp"
 #include "newton.hpp"
 #include "once_around.hpp"
-#include "orbweaver/ad/rounded.hpp"
+#include "orbweaver/model/rounded.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
@@ -235,12 +235,12 @@ class Certifier::Parts {
 
   [[nodiscard]] double energy_rounding() const {
     if (!_formulas) return 0.0;
-    const std::vector<ad::Rounded> parameters(_formulas->values.begin(), _formulas->values.end());
+    const std::vector<model::Rounded> parameters(_formulas->values.begin(), _formulas->values.end());
     double largest = 0.0;
     for (const State& state : _states) {
-      const std::vector<ad::Rounded> z(state.begin(), state.end());
+      const std::vector<model::Rounded> z(state.begin(), state.end());
       const auto energy =
-          model::evaluate<ad::Rounded>(_formulas->graph, std::span(_formulas->conserved).first(1), z, parameters);
+          model::evaluate<model::Rounded>(_formulas->graph, std::span(_formulas->conserved).first(1), z, parameters);
       largest = std::max(largest, energy.front().error());
     }
     return largest;

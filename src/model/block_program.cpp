@@ -66,6 +66,31 @@ Forms binary(Operation operation) {
   }
 }
 
+/// Registers of this thread: a table of its own rows, and one whose first rows are the caller's.
+class Workspace {
+ public:
+  void reserve(std::size_t registers) {
+    if (registers <= _own.size()) return;
+    _space.resize(registers * block);
+    _own.resize(registers);
+    for (std::size_t n = 0; n < registers; ++n) _own[n] = _space.data() + n * block;
+    _direct = _own;
+  }
+  [[nodiscard]] double* const* own() const { return _own.data(); }
+  /// The first `callers` of `registers` rows are to be set.
+  [[nodiscard]] double** direct(std::size_t callers, std::size_t registers) {
+    std::copy(_own.begin() + static_cast<std::ptrdiff_t>(callers),
+              _own.begin() + static_cast<std::ptrdiff_t>(registers),
+              _direct.begin() + static_cast<std::ptrdiff_t>(callers));
+    return _direct.data();
+  }
+
+ private:
+  std::vector<double> _space;
+  std::vector<double*> _own;
+  std::vector<double*> _direct;
+};
+
 }  // namespace
 
 int vector_bits() {
@@ -93,7 +118,11 @@ double error_function(double x) { return std::erf(x); }
 class BlockProgram::Compiler {
  public:
   Compiler(const Graph& graph, std::span<const int> outputs, BlockProgram& program)
-      : _graph(graph), _program(program), _place(graph.nodes().size(), -1), _moves(graph.nodes().size(), false), _done(_moves) {
+      : _graph(graph),
+        _program(program),
+        _place(graph.nodes().size(), -1),
+        _moves(graph.nodes().size(), false),
+        _done(_moves) {
     _needed = needed_for(graph, outputs);
     for (std::size_t n = 0; n < _needed.size(); ++n)
       if (_needed[n] && graph.nodes()[n].operation == Operation::slope) _needed[n - 1] = true;
@@ -163,7 +192,8 @@ class BlockProgram::Compiler {
     }
     const auto give_back = [&](int n, std::size_t at) {
       const auto number = static_cast<std::size_t>(n);
-      if (last[number] == static_cast<int>(at) && _moves[number] && !is_output[number] && !is_leaf(node(number).operation))
+      if (last[number] == static_cast<int>(at) && _moves[number] && !is_output[number] &&
+          !is_leaf(node(number).operation))
         _free.push_back(place(n));
     };
     for (std::size_t n = 0; n < _needed.size(); ++n) {
@@ -250,28 +280,30 @@ void BlockProgram::run(std::span<const double> scalars, std::size_t states, std:
                        std::span<double* const> outputs) const {
   core::require(inputs.size() >= _inputs && outputs.size() == _outputs && scalars.size() == _scalars,
                 "a program of blocks is given what it asks for");
-  const BlockKernel run_block = kernel();
-  thread_local std::vector<double> space;
-  thread_local std::vector<double*> registers;
-  if (space.size() < _registers * block) space.resize(_registers * block);
-  registers.resize(std::max(registers.size(), _registers));
-  for (std::size_t n = 0; n < _registers; ++n) registers[n] = space.data() + n * block;
+  thread_local Workspace workspace;
+  workspace.reserve(_registers);
+  static const BlockKernel run_block = kernel();
   std::size_t j = 0;
-  for (; j + block <= states; j += block) {
-    for (std::size_t i = 0; i < _inputs; ++i) registers[i] = const_cast<double*>(inputs[i]) + j;
-    for (std::size_t k = 0; k < _outputs; ++k) registers[_inputs + k] = outputs[k] + j;
-    run_block(_code.data(), _code.size(), registers.data(), scalars.data(), block);
+  if (states >= block) {
+    double** const registers = workspace.direct(_inputs + _outputs, _registers);
+    for (; j + block <= states; j += block) {
+      for (std::size_t i = 0; i < _inputs; ++i) registers[i] = const_cast<double*>(inputs[i]) + j;
+      for (std::size_t k = 0; k < _outputs; ++k) registers[_inputs + k] = outputs[k] + j;
+      run_block(_code.data(), _code.size(), registers, scalars.data(), block);
+    }
   }
   if (j == states) return;
+  double* const* const registers = workspace.own();
   const std::size_t count = states - j;
   const std::size_t padded = (count + granule - 1) / granule * granule;
-  for (std::size_t n = 0; n < _inputs + _outputs; ++n) registers[n] = space.data() + n * block;
   for (std::size_t i = 0; i < _inputs; ++i) {
-    std::copy_n(inputs[i] + j, count, registers[i]);
-    std::fill(registers[i] + count, registers[i] + padded, inputs[i][states - 1]);
+    double* const row = registers[i];
+    for (std::size_t n = 0; n < count; ++n) row[n] = inputs[i][j + n];
+    for (std::size_t n = count; n < padded; ++n) row[n] = row[count - 1];
   }
-  run_block(_code.data(), _code.size(), registers.data(), scalars.data(), padded);
-  for (std::size_t k = 0; k < _outputs; ++k) std::copy_n(registers[_inputs + k], count, outputs[k] + j);
+  run_block(_code.data(), _code.size(), registers, scalars.data(), padded);
+  for (std::size_t k = 0; k < _outputs; ++k)
+    for (std::size_t n = 0; n < count; ++n) outputs[k][j + n] = registers[_inputs + k][n];
 }
 
 }  // namespace orbweaver::model

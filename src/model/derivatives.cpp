@@ -78,8 +78,8 @@ std::vector<int> derivatives_along(Graph& graph, std::span<const int> outputs, c
     } else if (node.operation == Operation::divide) {
       if (at(node.first) < 0 && at(node.second) < 0) continue;
       const int share = graph.divide(graph.constant(1.0), node.second);
-      moved[n] = sparse.product(
-          sparse.difference(at(node.first), sparse.product(static_cast<int>(n), at(node.second))), share);
+      moved[n] = sparse.product(sparse.difference(at(node.first), sparse.product(static_cast<int>(n), at(node.second))),
+                                share);
     } else if (!is_leaf(node.operation)) {
       const bool binary = node.operation <= Operation::multiply;
       if (at(node.first) < 0 && (!binary || at(node.second) < 0)) continue;

@@ -160,9 +160,10 @@ class Reader {
 
   void descend(int level) const {
     if (level > most_levels)
-      _place.fail(peek().column, fmt::format("expected a formula of at most {} levels, got more; give parts of it names "
-                                             "by `definitions`",
-                                             most_levels));
+      _place.fail(peek().column,
+                  fmt::format("expected a formula of at most {} levels, got more; give parts of it names "
+                              "by `definitions`",
+                              most_levels));
   }
 
   Formula sum(int level) {
@@ -321,8 +322,8 @@ bool is_name(std::string_view text) {
 }
 
 const std::vector<std::string>& function_names() {
-  static const std::vector<std::string> names{"sqrt", "exp",  "log",  "sin",  "cos",  "tan",  "asin", "acos",
-                                              "atan", "sinh", "cosh", "tanh", "atan2", "erf",  "pow"};
+  static const std::vector<std::string> names{"sqrt", "exp",  "log",  "sin",  "cos",   "tan", "asin", "acos",
+                                              "atan", "sinh", "cosh", "tanh", "atan2", "erf", "pow"};
   return names;
 }
 

@@ -78,8 +78,7 @@ int Graph::divide(int a, int b) {
   if (is_constant(b, 1.0)) return a;
   if (is_constant(b, -1.0)) return negate(a);
   const double x = node(a).value, y = node(b).value;
-  const bool exact =
-      is_constant(a) && is_constant(b) && std::isfinite(x / y) && std::fma(x / y, y, -x) == 0.0;
+  const bool exact = is_constant(a) && is_constant(b) && std::isfinite(x / y) && std::fma(x / y, y, -x) == 0.0;
   return folded(exact, x / y, {Operation::divide, a, b, 0.0});
 }
 

@@ -166,8 +166,9 @@ Phased with_phase(Graph& graph, std::span<const int> outputs, int time, int phas
     const auto ratio = ratio_of(trials[0][n] / trials[0].back());
     for (const std::vector<double>& trial : trials) {
       const double moved = trial[n] / trial.back();
-      const bool is_same = ratio && std::abs(moved * static_cast<double>(ratio->under) - static_cast<double>(ratio->over)) <
-                                        1e-9 * std::abs(static_cast<double>(ratio->over));
+      const bool is_same =
+          ratio && std::abs(moved * static_cast<double>(ratio->under) - static_cast<double>(ratio->over)) <
+                       1e-9 * std::abs(static_cast<double>(ratio->over));
       if (!is_same) result.obstacle = "frequencies that are no rational multiples of one another";
     }
     if (!result.obstacle.empty()) return result;
@@ -185,8 +186,7 @@ Phased with_phase(Graph& graph, std::span<const int> outputs, int time, int phas
     over = 1;
   }
   std::map<int, long> turns;
-  for (std::size_t n = 0; n < rates.size(); ++n)
-    turns[rates[n]] = ratios[n].over * (under / ratios[n].under) / over;
+  for (std::size_t n = 0; n < rates.size(); ++n) turns[rates[n]] = ratios[n].over * (under / ratios[n].under) / over;
   result.frequency = graph.divide(graph.multiply(base, graph.constant(static_cast<double>(over))),
                                   graph.constant(static_cast<double>(under)));
   result.outputs = conversion.rewritten(turns, phase);

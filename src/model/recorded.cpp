@@ -50,6 +50,8 @@ Recorded sinh(Recorded x) { return Recorded(Recorded::Place{graph().sinh(x._node
 Recorded cosh(Recorded x) { return Recorded(Recorded::Place{graph().cosh(x._node)}); }
 Recorded tanh(Recorded x) { return Recorded(Recorded::Place{graph().tanh(x._node)}); }
 Recorded erf(Recorded x) { return Recorded(Recorded::Place{graph().erf(x._node)}); }
-Recorded pow(Recorded x, Recorded exponent) { return Recorded(Recorded::Place{graph().power(x._node, exponent._node)}); }
+Recorded pow(Recorded x, Recorded exponent) {
+  return Recorded(Recorded::Place{graph().power(x._node, exponent._node)});
+}
 
 }  // namespace orbweaver::model

@@ -22,16 +22,20 @@ const std::map<std::string, std::string>& not_smooth() {
   static const std::string step = "a steep smooth step, 0.5*(1 + tanh(x/e)) with a small e";
   static const std::string larger = "0.5*(a + b + sqrt((a - b)^2 + e^2)) with a small e";
   static const std::string smaller = "0.5*(a + b - sqrt((a - b)^2 + e^2)) with a small e";
-  static const std::map<std::string, std::string> names{
-      {"abs", "sqrt(x^2 + e^2) with a small e"}, {"fabs", "sqrt(x^2 + e^2) with a small e"},
-      {"sign", "tanh(x/e) with a small e"},      {"sgn", "tanh(x/e) with a small e"},
-      {"max", larger},                           {"min", smaller},
-      {"heav", step},                            {"heaviside", step},
-      {"if", step},                              {"floor", "a periodic function, or steep smooth steps"},
-      {"flr", "a periodic function, or steep smooth steps"},
-      {"ceil", "a periodic function, or steep smooth steps"},
-      {"round", "a periodic function, or steep smooth steps"},
-      {"mod", "an angle (`angles`) and a periodic function of it"}};
+  static const std::map<std::string, std::string> names{{"abs", "sqrt(x^2 + e^2) with a small e"},
+                                                        {"fabs", "sqrt(x^2 + e^2) with a small e"},
+                                                        {"sign", "tanh(x/e) with a small e"},
+                                                        {"sgn", "tanh(x/e) with a small e"},
+                                                        {"max", larger},
+                                                        {"min", smaller},
+                                                        {"heav", step},
+                                                        {"heaviside", step},
+                                                        {"if", step},
+                                                        {"floor", "a periodic function, or steep smooth steps"},
+                                                        {"flr", "a periodic function, or steep smooth steps"},
+                                                        {"ceil", "a periodic function, or steep smooth steps"},
+                                                        {"round", "a periodic function, or steep smooth steps"},
+                                                        {"mod", "an angle (`angles`) and a periodic function of it"}};
   return names;
 }
 
@@ -54,7 +58,8 @@ bool is_function(const std::string& name) {
 
 void Scope::require_free(const std::string& name, const std::string& place) const {
   const auto refuse = [&](const std::string& taken) {
-    throw core::InputError(fmt::format("{}: expected a name of its own, got `{}`, {}; take another", place, name, taken));
+    throw core::InputError(
+        fmt::format("{}: expected a name of its own, got `{}`, {}; take another", place, name, taken));
   };
   if (is_function(name)) refuse("which is a function");
   if (name == "pi" || name == "t") refuse(name == "pi" ? "which is a number" : "which is time");
@@ -106,7 +111,8 @@ int Scope::number(const Formula& part) {
   for (std::size_t at = 0; at < part.text.size(); at += chunk) {
     const std::string digits = part.text.substr(at, chunk);
     const int next = _graph.constant(std::stod(digits));
-    value = value < 0 ? next : _graph.add(_graph.multiply(value, _graph.decimal(1.0, static_cast<int>(digits.size()))), next);
+    value = value < 0 ? next
+                      : _graph.add(_graph.multiply(value, _graph.decimal(1.0, static_cast<int>(digits.size()))), next);
   }
   if (part.exponent == 0) return value;
   if (_graph.is_constant(value)) return _graph.decimal(_graph.node(value).value, part.exponent);
@@ -115,8 +121,8 @@ int Scope::number(const Formula& part) {
 
 int Scope::evaluate(const Formula& part, const Bindings& bindings) {
   if (_graph.size() > most_nodes)
-    bindings.formula.fail(part.column,
-                          fmt::format("expected a model of at most {} operations, got more; make it smaller", most_nodes));
+    bindings.formula.fail(
+        part.column, fmt::format("expected a model of at most {} operations, got more; make it smaller", most_nodes));
   const auto operand = [&](std::size_t n) { return evaluate(part.parts[n], bindings); };
   switch (part.kind) {
     case Formula::Kind::number: return number(part);
@@ -167,7 +173,8 @@ int Scope::of_name(const Formula& part, const Bindings& bindings) {
       const auto beyond = ends.beyond.find(at);
       if (beyond != ends.beyond.end()) {
         if (prime == part.text.size()) return evaluate(beyond->second, bindings.indices);
-        bindings.formula.fail(part.column, fmt::format("expected a rate within the ends, got that of {}[{}]", base, at));
+        bindings.formula.fail(part.column,
+                              fmt::format("expected a rate within the ends, got that of {}[{}]", base, at));
       }
       if (ends.cyclic && (at < ends.first || at > ends.last)) {
         const long count = ends.last - ends.first + 1;
@@ -198,10 +205,9 @@ void Scope::refuse_unknown(const Formula& part, const std::string& name, const B
   const std::string near = document::nearest(name, known);
   if (unary_functions().contains(name))
     bindings.formula.fail(part.column, fmt::format("expected `{}(...)`, got it without an argument", name));
-  bindings.formula.fail(
-      part.column,
-      fmt::format("expected a name that stands for something, got `{}`; {}", name,
-                  near.empty() ? "add it to `parameters` or `definitions`" : fmt::format("did you mean `{}`?", near)));
+  bindings.formula.fail(part.column, fmt::format("expected a name that stands for something, got `{}`; {}", name,
+                                                 near.empty() ? "add it to `parameters` or `definitions`"
+                                                              : fmt::format("did you mean `{}`?", near)));
 }
 
 int Scope::of_call(const Formula& part, const Bindings& bindings) {
@@ -238,10 +244,10 @@ int Scope::of_call(const Formula& part, const Bindings& bindings) {
     for (const auto& [own, one] : _definitions)
       if (!one.arguments.empty()) known.push_back(own);
     const std::string near = document::nearest(part.text, known);
-    bindings.formula.fail(
-        part.column, fmt::format("expected a function, got `{}`; {}", part.text,
-                                 near.empty() ? fmt::format("there are {}", fmt::join(function_names(), ", "))
-                                              : fmt::format("did you mean `{}`?", near)));
+    bindings.formula.fail(part.column,
+                          fmt::format("expected a function, got `{}`; {}", part.text,
+                                      near.empty() ? fmt::format("there are {}", fmt::join(function_names(), ", "))
+                                                   : fmt::format("did you mean `{}`?", near)));
   }
   require_count(1);
   return (_graph.*function->second)(evaluate(part.parts[0], bindings));
@@ -266,8 +272,8 @@ int Scope::of_definition(const std::string& name, const std::map<std::string, in
   Definition& definition = _definitions.at(name);
   if (definition.node >= 0) return definition.node;
   if (std::find(_open.begin(), _open.end(), name) != _open.end())
-    bindings.formula.fail(part.column, fmt::format("expected definitions without circles, got {} -> {}",
-                                                   fmt::join(_open, " -> "), name));
+    bindings.formula.fail(
+        part.column, fmt::format("expected definitions without circles, got {} -> {}", fmt::join(_open, " -> "), name));
   if (_open.size() > static_cast<std::size_t>(most_levels))
     bindings.formula.fail(part.column, fmt::format("expected definitions at most {} deep, got more", most_levels));
   _open.push_back(name);
@@ -282,9 +288,7 @@ int Scope::of_definition(const std::string& name, const std::map<std::string, in
 }
 
 long Scope::whole(const PlacedFormula& formula, const Formula& part, const Indices& indices) const {
-  const auto refuse = [&] {
-    formula.fail(part.column, "expected a whole number made of indices, sizes and numbers");
-  };
+  const auto refuse = [&] { formula.fail(part.column, "expected a whole number made of indices, sizes and numbers"); };
   const auto operand = [&](std::size_t n) { return whole(formula, part.parts[n], indices); };
   constexpr long most = 1000000;
   const auto within = [&](long value) {

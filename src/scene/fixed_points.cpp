@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/systems/reduced_system.hpp"
 #include "fields.hpp"
+#include "orbweaver/systems/reduced_system.hpp"
 
 namespace orbweaver::scene {
 

@@ -19,18 +19,23 @@ constexpr std::array table_of_keys{
     KnownKey{"name", "text", "the system's name", "", "what the archive calls the survey"},
 
     KnownKey{"system", "a map", must_be_given, "", "the equations of motion"},
-    KnownKey{"system.name", "one of the program's systems", must_be_given, "",
-             "which system; `orbweaver systems` lists them. With a plugin: one of its models, the first if left out"},
+    KnownKey{"system.name", "one of the program's systems", "none: there are equations", "",
+             "which system, or the name of a model that has equations here (docs/models.md); `orbweaver systems` lists "
+             "them. With a plugin: one of its models, the first if left out"},
     KnownKey{"system.plugin", "text", "none", "",
              "a file made by `orbweaver build-system`, told from the scene's folder (docs/your_own_system.md)"},
     KnownKey{"system.plugin_source", "text", "none", "",
              "the hash of the plugin's source; stands in the scene that an archive holds"},
     KnownKey{"system.plugin_abi", "an integer >= 1", "none", "",
              "the plugin's ABI version; stands in the scene that an archive holds"},
+    KnownKey{"system.model_file", "text", "none", "",
+             "a file that holds the model's text, told from the scene's folder (docs/models.md)"},
+    KnownKey{"system.active", "a list", "`[]`", "",
+             "effects that are on, of a model whose equations stand in the scene"},
     KnownKey{"system.parameters", "a map", "`{}`", "as `orbweaver systems` says",
              "values by name, of the system and of its effects; those left out have their standard value"},
     KnownKey{"system.effects", "a list", "`[]`", "",
-             "what is added to the ideal system, such as `damping`; `orbweaver systems` lists which go together"},
+             "what is added to the ideal system, such as `damping`; `orbweaver systems` lists them"},
     KnownKey{
         "system.scales", "a map", "`auto`", "that of what it scales",
         "units in which times, coordinates, conserved quantities and the parameter that moves are measured wherever "

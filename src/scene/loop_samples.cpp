@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "fields.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/input_file.hpp"
 #include "orbweaver/core/text.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
-#include "fields.hpp"
 
 namespace orbweaver::scene {
 

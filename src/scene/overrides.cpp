@@ -21,7 +21,13 @@ std::vector<std::string> split_path(const Override& change) {
 
 YAML::Node with_value(const YAML::Node& node, const std::vector<std::string>& keys, std::size_t depth,
                       const Override& change) {
-  if (depth == keys.size()) return change.value;
+  if (depth == keys.size()) {
+    // A number for a map that has a value and says more of it, as a model's parameters do.
+    if (!change.value.IsScalar() || !node.IsMap() || !node["value"]) return change.value;
+    YAML::Node valued = YAML::Clone(node);
+    valued["value"] = change.value;
+    return valued;
+  }
   if (!node.IsMap() && !node.IsNull()) {
     throw core::InputError(fmt::format(
         "--set {}: expected a map at `{}`, got {}; set the whole value instead", change.words,

@@ -81,6 +81,29 @@ std::string read_file(const std::filesystem::path& file) {
 
 namespace {
 
+/// Puts the model of a file into the scene's map, with the values and effects that the scene gives: an archive needs no
+/// other file. Returns whether there was one.
+bool hold_model(const std::optional<std::filesystem::path>& folder, YAML::Node root) {
+  YAML::Node system = root["system"];
+  if (!folder || !system["model_file"]) return false;
+  YAML::Node model = YAML::LoadFile((*folder / system["model_file"].Scalar()).string());
+  for (const auto& value : system["parameters"]) {
+    const std::string name = value.first.Scalar();
+    YAML::Node parameters = model["parameters"];
+    for (const auto& effect : model["effects"])
+      if (effect.second["parameters"][name]) parameters = effect.second["parameters"];
+    if (model["sizes"][name]) parameters = model["sizes"];
+    if (parameters[name].IsMap())
+      parameters[name]["value"] = value.second;
+    else
+      parameters[name] = value.second;
+  }
+  if (system["effects"]) model["active"] = system["effects"];
+  if (system["scales"]) model["scales"] = system["scales"];
+  root["system"] = model;
+  return true;
+}
+
 Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::string& text, const std::string& origin,
                const std::vector<std::string>& overrides) {
   const std::string place = quoted(origin);
@@ -98,7 +121,8 @@ Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::st
     root["system"]["plugin_source"] = scene.system.plugin_source;
     root["system"]["plugin_abi"] = systems::plugin_abi;
   }
-  const bool has_hashes = keep_hashes(scene, root);
+  const bool has_file = hold_model(folder, root);
+  const bool has_hashes = keep_hashes(scene, root) && !has_file;
   scene.text = is_plain && has_hashes ? text : emit(root);
   require_scene_size(scene.text.size(), place);
   return scene;

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "fields.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "system_section.hpp"
-#include "fields.hpp"
 
 namespace orbweaver::scene {
 
@@ -67,7 +67,7 @@ std::vector<std::string> names_of(const std::vector<systems::Parameter>& paramet
 void read_family_scalars(const std::optional<Field>& field, SystemChoice& choice) {
   using Hold = systems::FamilyScalars::Hold;
   const bool conservative = bound_system(choice)->structure().conservative();
-  const std::vector<std::string> names = names_of(known_parameters(systems::model_info(choice.name), choice));
+  const std::vector<std::string> names = names_of(known_parameters(info_of(choice), choice));
   std::optional<Field> free;
   std::optional<Field> hold;
   if (field) {
@@ -125,7 +125,7 @@ void read_guards(const Field& field, const systems::System& system, std::map<std
 
 void keep_to_model(const SystemChoice& choice, const systems::System& system, Limits& limits) {
   if (system.family_scalars().free.empty()) return;
-  for (const systems::Parameter& parameter : known_parameters(systems::model_info(choice.name), choice))
+  for (const systems::Parameter& parameter : known_parameters(info_of(choice), choice))
     if (parameter.name == system.family_scalars().free.front())
       std::tie(limits.parameter_from, limits.parameter_to) = std::pair(parameter.lower, parameter.upper);
 }
@@ -252,8 +252,7 @@ void read_loci(const Field& field, Scene& scene, const systems::System& system) 
   constexpr std::string_view example = "[{of: [period-doubling], free: [m2], range: [0.5, 2]}]";
   if (!scene.compute.stability)
     field.fail("`compute.stability: true`, as loci begin at crossings", "false", "leave one of them out");
-  const std::vector<systems::Parameter> parameters =
-      known_parameters(systems::model_info(scene.system.name), scene.system);
+  const std::vector<systems::Parameter> parameters = known_parameters(info_of(scene.system), scene.system);
   const std::vector<std::string>& moving = system.family_scalars().free;
   std::vector<std::string> names;
   for (const systems::Parameter& parameter : parameters)

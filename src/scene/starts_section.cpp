@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "fields.hpp"
 #include "fixed_points.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/file_hash.hpp"
@@ -13,7 +14,6 @@
 #include "orbweaver/core/survey_folder.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "sections.hpp"
-#include "fields.hpp"
 
 namespace orbweaver::scene {
 

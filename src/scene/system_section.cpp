@@ -1,10 +1,12 @@
 #include "system_section.hpp"
 
 #include <algorithm>
+#include <fstream>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/input_file.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -16,7 +18,7 @@ namespace {
 
 void read_effects(const Field& field, SystemChoice& choice) {
   std::vector<std::string> known;
-  for (const systems::Effect& effect : systems::model_info(choice.name).effects) known.push_back(effect.name);
+  for (const systems::Effect& effect : info_of(choice).effects) known.push_back(effect.name);
   for (const Field& item : field.list("[]")) {
     if (known.empty())
       item.fail(fmt::format("no effects, for the system {} has none", choice.name), item.got(), "remove it");
@@ -25,7 +27,7 @@ void read_effects(const Field& field, SystemChoice& choice) {
       item.fail("each effect once", item.got() + " again", "remove one");
     choice.effects.push_back(effect);
   }
-  ask_system(field, choice);  // whether it is compiled with all of them together
+  ask_system(field, choice);
 }
 
 bool holds(const std::vector<systems::Parameter>& parameters, const std::string& name) {
@@ -59,7 +61,13 @@ void ask_system(const Field& field, const SystemChoice& choice) {
 }
 
 std::shared_ptr<const systems::System> bound_system(const SystemChoice& choice) {
+  if (choice.model) systems::add_model(choice.model);
   return systems::make_system(choice.name, choice.parameters, choice.effects, choice.moving);
+}
+
+const systems::ModelInfo& info_of(const SystemChoice& choice) {
+  if (choice.model) systems::add_model(choice.model);
+  return systems::model_info(choice.name);
 }
 
 std::vector<systems::Parameter> known_parameters(const systems::ModelInfo& info, const SystemChoice& choice) {
@@ -165,13 +173,52 @@ const systems::Plugin& plugin_of(const Field& file, const Field* source,
 
 }  // namespace
 
+namespace {
+
+/// The model of a file beside the scene, or of a stored scene, which holds it.
+std::shared_ptr<const systems::ModelText> model_of_file(const Field& file, const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / file.text("my_model.yaml", longest_path);
+  const std::string place = quoted(path.string());
+  if (const std::string got = core::unreadable_input(path); !got.empty())
+    file.fail("the file of a model, told from the scene's folder", got, "check the path");
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(longest_scene + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  const Source source(place, {});
+  const YAML::Node root = parse_document(text, place, true);
+  const Field whole(source, root, "", 1);
+  if (!root.IsMap()) whole.fail("a model, a map", whole.got(), "for example `equations: {x': y, y': -x}`");
+  return std::make_shared<const systems::ModelText>(systems::read_model(whole));
+}
+
+bool has_equations(const Field& field) {
+  if (!field.is_map()) return false;
+  for (const Field::Entry& entry : field.entries("system: {name: double_pendulum}"))
+    for (const char* form : {"equations", "hamiltonian", "lagrangian"})
+      if (entry.key.key() == form) return true;
+  return false;
+}
+
+}  // namespace
+
 void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system) {
-  const Keys keys(field, names_of_keys(field.path()), "system: {name: double_pendulum}");
+  std::vector<std::string> known = names_of_keys(field.path());
+  if (has_equations(field)) {
+    system.model = std::make_shared<const systems::ModelText>(
+        systems::read_model(field, {"active", "scales", "model_file", "plugin", "plugin_source", "plugin_abi"}));
+    known.insert(known.end(), systems::model_keys().begin(), systems::model_keys().end());
+  }
+  const Keys keys(field, known, "system: {name: double_pendulum}");
   const auto name = keys.find("name");
   const auto plugin = keys.find("plugin");
   const auto source = keys.find("plugin_source");
-  if (!name && !plugin)
-    field.fail("the system's `name`", "a map without it", "add for example `name: double_pendulum`");
+  const auto file = keys.find("model_file");
+  if (system.model && (plugin || file)) field.fail("equations, or a file that has them", "both", "remove one");
+  if (file && folder) system.model = model_of_file(*file, *folder);
+  if (!name && !plugin && !system.model)
+    field.fail("the system's `name`, or its `equations`", "a map without them",
+               "add for example `name: double_pendulum`");
   if (const auto abi = keys.find("plugin_abi")) {
     const int version = abi->integer({.lower = 1, .example = "1"});
     if (version != systems::plugin_abi)
@@ -185,11 +232,14 @@ void read_system(const Field& field, const std::optional<std::filesystem::path>&
     system.plugin_source = found.source;
     system.name = name ? name->choice(found.models) : found.models.front();
   } else {
-    system.name = name->choice(systems::system_names());
+    system.name = system.model ? system.model->name : name->choice(systems::system_names());
   }
-  if (const auto effects = keys.find("effects")) read_effects(*effects, system);
-  if (const auto parameters = keys.find("parameters"))
-    read_parameters(*parameters, systems::model_info(system.name), system);
+  const bool is_inline = system.model && !file;
+  if (const auto effects = keys.find(is_inline ? "active" : "effects")) read_effects(*effects, system);
+  if (is_inline)
+    ask_system(field, system);
+  else if (const auto parameters = keys.find("parameters"))
+    read_parameters(*parameters, info_of(system), system);
   if (const auto scales = keys.find("scales")) read_scales(*scales, system);
 }
 

@@ -1,78 +1,63 @@
 #include "orbweaver/systems/registry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/text.hpp"
+#include "orbweaver/document/document.hpp"
 #include "orbweaver/systems/model/checks.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
-#include "pendulum_chain.hpp"
+#include "orbweaver/systems/text/graph_system.hpp"
 #include "registry_lines.hpp"
+#include "shipped_texts.hpp"
 
 namespace orbweaver::systems {
 
-// Models that have effects, which are defined in files of their own.
-template <class... Effects>
-class DoublePendulum;
-template <class... Effects>
-class Cr3bp;
-template <class... Effects>
-class Duffing;
-template <class... Effects>
-class Pcr3bp;
-template <class... Effects>
-class SwingingSpring;
-template <int coordinates>
-class Damping;
-template <int coordinates>
-class Drive;
-
-// One line a system and combination of its effects, the ideal one first; `class` declares what is defined in a file of
-// its own. Each combination is instantiated in the model's source or in combinations/.
-constexpr std::array built_in{
-    registry_line<Cr3bp<>>,
-    registry_line<Cr3bp<class Radiation, class Oblateness>>,
-    registry_line<DoublePendulum<>>,
-    registry_line<DoublePendulum<class RodInertia>>,
-    registry_line<DoublePendulum<class TorsionSprings>>,
-    registry_line<DoublePendulum<class JointDamping>>,
-    registry_line<DoublePendulum<class PivotDrive>>,
-    registry_line<DoublePendulum<class JointTorque>>,
-    registry_line<DoublePendulum<JointDamping, PivotDrive>>,
-    registry_line<DoublePendulum<JointDamping, JointTorque>>,
-    registry_line<DoublePendulum<RodInertia, TorsionSprings, JointDamping, PivotDrive, JointTorque>>,
-    registry_line<Duffing<>>,
-    registry_line<Duffing<Damping<1>>>,
-    registry_line<Duffing<Drive<1>>>,
-    registry_line<Duffing<Damping<1>, Drive<1>>>,
-    registry_line<class HarmonicOscillator>,
-    registry_line<class HenonHeiles>,
-    registry_line<class Lorenz>,
-    registry_line<Pcr3bp<>>,
-    registry_line<Pcr3bp<Radiation>>,
-    registry_line<Pcr3bp<Oblateness>>,
-    registry_line<Pcr3bp<Radiation, Oblateness>>,
-    registry_line<PendulumChain>,
-    registry_line<SwingingSpring<>>,
-    registry_line<SwingingSpring<Damping<2>>>,
-    registry_line<SwingingSpring<Drive<2>>>,
-    registry_line<SwingingSpring<Damping<2>, Drive<2>>>,
-    registry_line<class ThreeBodies>,
-    registry_line<class VanDerPol>,
-};
-
 namespace {
 
+struct TextSystem {
+  std::shared_ptr<const ModelText> text;
+  ModelInfo info;
+};
+
+/// Of the program, by name.
+const std::map<std::string, TextSystem>& shipped_systems() {
+  static const std::map<std::string, TextSystem> systems = [] {
+    std::map<std::string, TextSystem> read;
+    for (const auto& [name, text] : shipped_texts()) {
+      const document::Source source(fmt::format("{}.yaml", name), {});
+      const YAML::Node root = document::parse_document(std::string(text), source.origin(), true);
+      const auto model = std::make_shared<const ModelText>(read_model(document::Field(source, root, "", 1)));
+      read.emplace(name, TextSystem{model, info_of(*model)});
+    }
+    return read;
+  }();
+  return systems;
+}
+
+/// Of scenes, by name.
+std::map<std::string, TextSystem>& own_systems() {
+  static std::map<std::string, TextSystem> systems;
+  return systems;
+}
+
+const TextSystem* find_text(const std::string& name) {
+  for (const std::map<std::string, TextSystem>* systems : {&shipped_systems(), &std::as_const(own_systems())})
+    if (const auto found = systems->find(name); found != systems->end()) return &found->second;
+  return nullptr;
+}
+
+/// Of plugins.
 std::vector<RegistryLine>& registry() {
-  static std::vector<RegistryLine> lines(built_in.begin(), built_in.end());
+  static std::vector<RegistryLine> lines;
   return lines;
 }
 
@@ -82,46 +67,16 @@ const RegistryLine* find_line(const std::string& name) {
   return found == registry().end() ? nullptr : &*found;
 }
 
-/// One is a combination of effects of the other.
-bool are_one_model(const RegistryLine& a, const RegistryLine& b) {
-  const auto model = [](const RegistryLine& line) {
-    const std::string type = line.type();
-    return type.substr(0, type.find('<'));
-  };
-  return model(a) == model(b) && !a.info().effects.empty();
-}
-
 void require_new(const RegistryLine& line) {
   const ModelInfo& info = line.info();
   require_description(info);
-  const RegistryLine* known = find_line(info.name);
-  if (known == nullptr) return;
-  if (!are_one_model(line, *known))
+  if (find_line(info.name) != nullptr || shipped_systems().contains(info.name))
     throw core::InputError(
         fmt::format("it brings a system '{}', and there is another one of that name: rename it", info.name));
-  const std::set<std::string> effects(line.effects().begin(), line.effects().end());
-  for (const std::vector<std::string>& built : built_effects(info.name))
-    if (std::set(built.begin(), built.end()) == effects)
-      throw core::InputError(
-          fmt::format("it brings '{}' with the effects [{}], which there is already: leave the plugin out", info.name,
-                      joined(built)));
-}
-
-[[noreturn]] void refuse_combination(const std::string& name, const std::vector<std::string>& effects) {
-  std::vector<std::string> texts;
-  for (const std::vector<std::string>& built : built_effects(name)) texts.push_back(fmt::format("[{}]", joined(built)));
-  throw core::InputError(fmt::format(
-      "system '{}' is not compiled with the effects [{}] together; it is with one of {}: choose one of these, or have "
-      "it compiled by `orbweaver build-system --model {} --effects {} -o FILE.so` and name that file as the system's "
-      "`plugin`",
-      name, joined(effects), joined(texts), name, fmt::join(effects, ",")));
 }
 
 /// A plugin's model that contradicts itself is wrong input, not a fault of the program.
 std::shared_ptr<const System> made(const RegistryLine& line, const Bound& bound) {
-  const bool is_built_in =
-      std::any_of(built_in.begin(), built_in.end(), [&](const RegistryLine& own) { return own.make == line.make; });
-  if (is_built_in) return line.make(bound);
   const std::string& name = line.info().name;
   try {
     return line.make(bound);
@@ -132,22 +87,26 @@ std::shared_ptr<const System> made(const RegistryLine& line, const Bound& bound)
   }
 }
 
-/// What stands between the outer brackets of a template's type.
-std::vector<std::string> template_arguments(const std::string& type) {
-  std::vector<std::string> arguments;
-  std::string argument;
-  int depth = 0;
-  for (const char c : type) {
-    if (c == '>' && --depth == 0 && !argument.empty()) arguments.push_back(argument);
-    if (c == ',' && depth == 1) {
-      arguments.push_back(argument);
-      argument.clear();
-    } else if (depth > 0 && (c != ' ' || depth > 1)) {
-      argument += c;
-    }
-    if (c == '<') ++depth;
+void require_sizes(const TextSystem& system, const Bound& bound) {
+  for (const ParameterText& size : system.text->terms.parameters) {
+    if (!size.is_whole) continue;
+    const std::string& name = size.parameter.name;
+    if (const double value = bound[name]; value != std::floor(value))
+      throw core::InputError(
+          fmt::format("parameter '{}' of system '{}' must be a whole number; {} came", name, system.text->name, value));
+    if (std::count(bound.scalars.free.begin(), bound.scalars.free.end(), name) > 0)
+      throw core::InputError(
+          fmt::format("parameter '{}' of system '{}' is a whole number, so that nothing can be "
+                      "continued in it; choose another parameter",
+                      name, system.text->name));
   }
-  return arguments;
+}
+
+std::shared_ptr<const System> made(const std::string& name, const Bound& bound) {
+  if (const RegistryLine* line = find_line(name)) return made(*line, bound);
+  const TextSystem& system = *find_text(name);
+  require_sizes(system, bound);
+  return system_of(build_model(*system.text, bound.parameters, bound.effects), bound);
 }
 
 /// Of the model or of an effect asked for.
@@ -174,8 +133,6 @@ HeldTotals held_totals(const System& system, std::map<std::string, double> given
 }
 
 }  // namespace
-
-const std::vector<RegistryLine>& registry_lines() { return registry(); }
 
 void require_description(const ModelInfo& info) {
   constexpr std::size_t longest = 200;
@@ -238,43 +195,39 @@ void add_registry_lines(std::span<const RegistryLine> lines) {
 
 std::vector<std::string> system_names() {
   std::vector<std::string> names;
-  for (const RegistryLine& candidate : registry())
-    if (std::find(names.begin(), names.end(), candidate.info().name) == names.end())
-      names.push_back(candidate.info().name);
+  for (const auto& [name, system] : shipped_systems()) names.push_back(name);
+  for (const RegistryLine& candidate : registry()) names.push_back(candidate.info().name);
   return names;
 }
 
 const ModelInfo& model_info(const std::string& name) {
   if (const RegistryLine* line = find_line(name)) return line->info();
+  if (const TextSystem* system = find_text(name)) return system->info;
   throw core::InputError(fmt::format("there is no system '{}'; the systems are: {}", name, joined(system_names())));
 }
 
-std::vector<std::vector<std::string>> built_effects(const std::string& name) {
-  const ModelInfo& ideal = model_info(name);
-  std::vector<std::vector<std::string>> combinations;
-  for (const RegistryLine& candidate : registry())
-    if (candidate.info().name == ideal.name) combinations.push_back(candidate.effects());
-  return combinations;
+void add_model(const std::shared_ptr<const ModelText>& text) {
+  if (shipped_systems().contains(text->name) || find_line(text->name) != nullptr)
+    throw core::InputError(
+        fmt::format("{}: expected a name of its own, got `{}`, which is another system's; give it "
+                    "another `name`",
+                    text->place, text->name));
+  TextSystem& own = own_systems()[text->name];
+  if (own.text == text) return;
+  TextSystem read{text, info_of(*text)};
+  try {
+    require_description(read.info);
+  } catch (const core::InputError& error) {
+    throw core::InputError(fmt::format("{}: {}", text->place, error.what()));
+  }
+  own = std::move(read);
 }
 
-std::string type_with_effects(const std::string& name, const std::vector<std::string>& effects) {
-  const ModelInfo& info = model_info(name);
-  if (info.effects.empty()) throw core::InputError(fmt::format("the system {} has no effects", name));
-  static_cast<void>(bound_to(info, {}, effects));
-  std::map<std::string, std::string> types;
-  std::string model;
-  for (const RegistryLine& candidate : registry()) {
-    if (candidate.info().name != name) continue;
-    const std::string type = candidate.type();
-    model = type.substr(0, type.find('<'));
-    const std::vector<std::string> arguments = template_arguments(type);
-    for (std::size_t n = 0; n < arguments.size(); ++n) types[candidate.effects().at(n)] = arguments[n];
-  }
-  std::vector<std::string> in_order;
-  for (const Effect& effect : info.effects)
-    if (std::find(effects.begin(), effects.end(), effect.name) != effects.end())
-      in_order.push_back(types.at(effect.name));
-  return fmt::format("{}<{}>", model, fmt::join(in_order, ", "));
+std::string system_text(const std::string& name) {
+  static_cast<void>(model_info(name));
+  for (const auto& [own, text] : shipped_texts())
+    if (own == name) return std::string(text);
+  return "";
 }
 
 std::shared_ptr<const System> make_system(const std::string& name, const std::map<std::string, double>& parameters,
@@ -286,26 +239,19 @@ std::shared_ptr<const System> make_system(const std::string& name, const std::ma
   for (const auto& [parameter, value] : parameters) (is_own(parameter) ? own : others)[parameter] = value;
   const bool moves_own = std::all_of(scalars.free.begin(), scalars.free.end(), is_own);
   const Bound bound = bound_to(info, own, effects, moves_own ? scalars : FamilyScalars{});
-  const std::set<std::string> asked(effects.begin(), effects.end());
-  for (const RegistryLine& candidate : registry()) {
-    if (candidate.info().name != name) continue;
-    const std::vector<std::string>& has = candidate.effects();
-    if (std::set(has.begin(), has.end()) != asked) continue;
-    std::shared_ptr<const System> system = made(candidate, bound);
-    const std::vector<LinearTotal> totals = linear_totals(*system);
-    const HeldTotals held = held_totals(*system, others, scalars);
-    const auto is_total = [&](const std::string& parameter) {
-      return std::any_of(totals.begin(), totals.end(), [&](const auto& total) { return total.name == parameter; });
-    };
-    const auto is_known = [&](const std::string& parameter) { return is_own(parameter) || is_total(parameter); };
-    const bool are_known =
-        std::all_of(held.values.begin(), held.values.end(), [&](const auto& of) { return is_known(of.first); }) &&
-        std::all_of(scalars.free.begin(), scalars.free.end(), is_known);
-    if (!are_known || (totals.empty() && !others.empty()))
-      static_cast<void>(bound_to(info, parameters, effects, scalars));  // says which are not
-    return totals.empty() ? reduced(std::move(system)) : without_totals(std::move(system), totals, held);
-  }
-  refuse_combination(name, effects);
+  std::shared_ptr<const System> system = made(name, bound);
+  const std::vector<LinearTotal> totals = linear_totals(*system);
+  const HeldTotals held = held_totals(*system, others, scalars);
+  const auto is_total = [&](const std::string& parameter) {
+    return std::any_of(totals.begin(), totals.end(), [&](const auto& total) { return total.name == parameter; });
+  };
+  const auto is_known = [&](const std::string& parameter) { return is_own(parameter) || is_total(parameter); };
+  const bool are_known =
+      std::all_of(held.values.begin(), held.values.end(), [&](const auto& of) { return is_known(of.first); }) &&
+      std::all_of(scalars.free.begin(), scalars.free.end(), is_known);
+  if (!are_known || (totals.empty() && !others.empty()))
+    static_cast<void>(bound_to(info, parameters, effects, scalars));  // says which are not
+  return totals.empty() ? reduced(std::move(system)) : without_totals(std::move(system), totals, held);
 }
 
 }  // namespace orbweaver::systems

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbweaver/ad/dual.hpp"
+#include "support/dual.hpp"
 
 namespace lanes_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "orbweaver/ad/derivatives.hpp"
+#include "support/dual_derivatives.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 

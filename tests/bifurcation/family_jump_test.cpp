@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
-#include "orbweaver/ad/derivatives.hpp"
+#include "support/dual_derivatives.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "support/delegating_system.hpp"
 #include "turning_sense.hpp"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "continuation/families.hpp"
-#include "orbweaver/ad/derivatives.hpp"
+#include "support/dual_derivatives.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "support/stated_system.hpp"

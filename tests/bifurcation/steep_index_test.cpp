@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbweaver/ad/derivatives.hpp"
+#include "support/dual_derivatives.hpp"
 #include "orbweaver/bifurcation/crossing.hpp"
 #include "support/stated_system.hpp"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # check_case.sh PROGRAM FOLDER TABLE [--all]: surveys a problem that users brought, and holds it against what is right of it.
-# FOLDER has scenes, plugins' sources (NAME.cpp makes ./NAME.so) and TABLE, whose lines are
-#   refuses FILE TEXT     a plugin's source that has to be refused with status 2, and what is said of it
+# FOLDER has scenes and TABLE, whose lines are
+#   refuses FILE TEXT     a scene that has to be refused with status 2, and what is said of it
 #   scene FILE            the scene that the lines below are about
 #   status N              with which its survey has to end (default 0)
 #   set KEY=VALUE         a setting of all its runs
@@ -74,7 +74,7 @@ declare -A tables
 rows_of() {
   local name=$1
   shift
-  [[ -n "${tables[$name]:-}" ]] || tables[$name]=$("$program" show out/atlas.h5 "$name" --csv $plugin 2>/dev/null)
+  [[ -n "${tables[$name]:-}" ]] || tables[$name]=$("$program" show out/atlas.h5 "$name" --csv 2>/dev/null)
   matching_rows "$@" <<<"${tables[$name]}"
 }
 
@@ -102,7 +102,7 @@ same() {
   survey "$name" "$@"
   ((status == wanted_status)) || { fault "$*: status $status, not $wanted_status"; grep -v '^ ' "$name.txt" | tail -n 20; }
   [[ -e out/atlas.h5 && -e "$name/atlas.h5" ]] || return 0
-  difference=$("$program" compare out/atlas.h5 "$name/atlas.h5" $plugin 2>&1) || fault "$*: another tree: $difference"
+  difference=$("$program" compare out/atlas.h5 "$name/atlas.h5" 2>&1) || fault "$*: another tree: $difference"
 }
 
 variations=()
@@ -130,26 +130,21 @@ begin_checks() {
 }
 
 cp "$folder"/* .
-for source in *.cpp; do
-  [[ -e "$source" ]] || continue
-  refusal=$(sed -n "s/^refuses $source //p" "$table")
-  "$program" build-system "$source" -o "${source%.cpp}.so" >build.txt 2>&1
+while read -r word source refusal; do
+  [[ "$word" == refuses ]] || continue
+  scene=$source
+  "$program" check "$source" >check.txt 2>&1
   status=$?
-  if [[ -z "$refusal" ]]; then
-    ((status == 0)) || { cat build.txt; exit 1; }
-  else
-    ((status == 2)) && grep -qF -- "$refusal" build.txt || { scene=$source fault "not refused so: $refusal"; cat build.txt; }
-  fi
-done
+  ((status == 2)) && grep -qF -- "$refusal" check.txt || { fault "not refused so: $refusal"; cat check.txt; }
+done <"$table"
 
-scene='' surveyed='' plugin=''
+scene='' surveyed=''
 while read -r word rest; do
   case "$word" in
     '' | \#* | refuses) ;;
     scene)
       end_scene
-      scene=$rest surveyed='' wanted_status=0 always=() variations=() plugin=''
-      [[ ! "$(<"$scene")" =~ plugin:\ *([^,}]*) ]] || plugin="--plugin ${BASH_REMATCH[1]}"
+      scene=$rest surveyed='' wanted_status=0 always=() variations=()
       ;;
     status) wanted_status=$rest ;;
     set) always+=("$rest") ;;

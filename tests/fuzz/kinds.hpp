@@ -26,6 +26,7 @@ Kind grown_scenes();  ///< keys, values and structures put together
 Kind overrides();     ///< words behind --set, one a line
 Kind messages();      ///< of the queue, half of them with a right checksum
 
+Kind models();        ///< the texts of the shipped systems, changed
 Kind loops();         ///< in CSV, as starts
 Kind descriptions();  ///< names and meanings that a plugin's systems bring
 

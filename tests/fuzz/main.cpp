@@ -75,6 +75,7 @@ fuzz::Kind kind_of(const std::string& name) {
       {"scenes", fuzz::scenes},
       {"grown_scenes", fuzz::grown_scenes},
       {"overrides", fuzz::overrides},
+      {"models", fuzz::models},
       {"messages", fuzz::messages},
       {"loops", fuzz::loops},
       {"descriptions", fuzz::descriptions},

@@ -31,8 +31,9 @@ TEST(BlockProgram, DoesWhatTheGraphSays) {
   const Recorded x = recording.input(0), y = recording.input(1), p = recording.parameter(0), q = recording.parameter(1);
   const Recorded wave = sin(x) * cos(x) - cos(y * p);
   const Recorded share = 1.0 / (x * x + p * q);
-  const std::vector<Recorded> wanted{wave,           share * wave - q, p - x,  p / (y * y + 1.0), x,     p * q - 3.0,
-                                     share * wave - q, -exp(x - y),    y / p,  Recorded(0.0),     tanh(y) * q};
+  const std::vector<Recorded> wanted{
+      wave,  share * wave - q, p - x,      p / (y * y + 1.0), x, p * q - 3.0, share * wave - q, -exp(x - y),
+      y / p, Recorded(0.0),    tanh(y) * q};
   std::vector<int> outputs;
   for (const Recorded& value : wanted) outputs.push_back(value.node());
   const BlockProgram program(recording.graph(), outputs);
@@ -80,14 +81,22 @@ struct Function {
 
 TEST(BlockProgram, FunctionsAreRightToFewUnitsInTheLastPlace) {
   const std::array functions{
-      Function{"exp", &Graph::exp, std::exp, -745.0, 709.7, 1.0},        Function{"log", &Graph::log, std::log, 1e-300, 10.0, 1.0},
-      Function{"log", &Graph::log, std::log, 1e-320, 1e-310, 1.0},       Function{"sin", &Graph::sin, std::sin, -40.0, 40.0, 1.0},
-      Function{"cos", &Graph::cos, std::cos, -3e4, 3e4, 1.0},            Function{"sin far", &Graph::sin, std::sin, 1e5, 1e9, 1.0},
-      Function{"tanh", &Graph::tanh, std::tanh, -3.0, 3.0, 2.5},         Function{"tanh far", &Graph::tanh, std::tanh, -800.0, 800.0, 2.0},
-      Function{"atan", &Graph::atan, std::atan, -5.0, 5.0, 1.5},         Function{"atan far", &Graph::atan, std::atan, -1e9, 1e9, 1.5},
-      Function{"asin", &Graph::asin, std::asin, -1.0, 1.0, 4.0},         Function{"acos", &Graph::acos, std::acos, -1.0, 1.0, 4.0},
-      Function{"sqrt", &Graph::sqrt, std::sqrt, 0.0, 1e9, 0.51},         Function{"erf", &Graph::erf, std::erf, -6.0, 6.0, 1.0},
-      Function{"exp near 0", &Graph::exp, std::exp, -1e-3, 1e-3, 1.0},   Function{"tanh near 0", &Graph::tanh, std::tanh, -0.01, 0.01, 1.5},
+      Function{"exp", &Graph::exp, std::exp, -745.0, 709.7, 1.0},
+      Function{"log", &Graph::log, std::log, 1e-300, 10.0, 1.0},
+      Function{"log", &Graph::log, std::log, 1e-320, 1e-310, 1.0},
+      Function{"sin", &Graph::sin, std::sin, -40.0, 40.0, 1.0},
+      Function{"cos", &Graph::cos, std::cos, -3e4, 3e4, 1.0},
+      Function{"sin far", &Graph::sin, std::sin, 1e5, 1e9, 1.0},
+      Function{"tanh", &Graph::tanh, std::tanh, -3.0, 3.0, 2.5},
+      Function{"tanh far", &Graph::tanh, std::tanh, -800.0, 800.0, 2.0},
+      Function{"atan", &Graph::atan, std::atan, -5.0, 5.0, 1.5},
+      Function{"atan far", &Graph::atan, std::atan, -1e9, 1e9, 1.5},
+      Function{"asin", &Graph::asin, std::asin, -1.0, 1.0, 4.0},
+      Function{"acos", &Graph::acos, std::acos, -1.0, 1.0, 4.0},
+      Function{"sqrt", &Graph::sqrt, std::sqrt, 0.0, 1e9, 0.51},
+      Function{"erf", &Graph::erf, std::erf, -6.0, 6.0, 1.0},
+      Function{"exp near 0", &Graph::exp, std::exp, -1e-3, 1e-3, 1.0},
+      Function{"tanh near 0", &Graph::tanh, std::tanh, -0.01, 0.01, 1.5},
   };
   std::mt19937 random(2);
   for (const Function& function : functions) {

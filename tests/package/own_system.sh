@@ -74,7 +74,6 @@ sed 's/two_masses.so/other.so/' two_masses.yaml >other.yaml
 expect_refusal "plugin_source" mpirun -n 2 orbweaver survey other.yaml -o out --resume
 expect_refusal "cannot be loaded" orbweaver verify --plugin two_masses.yaml out/atlas.h5
 expect_refusal "it does not exist" orbweaver verify --plugin nowhere.so out/atlas.h5
-expect_refusal "which there is already" orbweaver build-system --model duffing --effects drive -o drive.so
 # A structure that does not fit its model: the item is named once, whatever the number of ranks, and no place in Orbweaver's own sources.
 sed 's/"two_masses"/"wrong"/; s/{"energy"}/{"energy", "momentum"}/' two_masses.cpp >wrong.cpp
 sed 's/two_masses.so/wrong.so/' two_masses.yaml >wrong.yaml

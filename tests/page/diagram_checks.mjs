@@ -6,7 +6,7 @@ import { browser, change, checkPage, findOrbit, folder, fragment, item, pixels, 
 await checkPage('opens from disk, without a message or a request, and says what it shows', 'pendulum', {}, async (page) => {
   const drawn = await page.evaluate(() => performance.getEntriesByName('drawn')[0].startTime);
   console.log(`        first drawn after ${drawn.toFixed(0)} ms`);
-  assert.equal(await page.title(), 'Ideal double pendulum – Orbweaver');
+  assert.equal(await page.title(), 'Double pendulum – Orbweaver');
   const names = await page.$$eval('[role=treeitem] .name', (e) => e.map((n) => n.textContent));
   for (const name of ['In-Phase', 'IDa', 'IDb', 'Out-Phase', 'Up-Down', 'Down-Up']) assert.ok(names.includes(name), name);
   const label = await page.$eval('#diagram1', (c) => c.getAttribute('aria-label'));

@@ -225,7 +225,7 @@ TEST(Show, TheHeadHasTheSystemItsParametersAndUnits) {
   print_table_head(known, Archive(test::write_sample_atlas(test::fresh_folder("head_known"), header, {})),
                    {.width = 60});
   EXPECT_THAT(known.str(),
-              HasSubstr("double_pendulum: Ideal double pendulum, with damping\nparameters   c1 = 0.25 N m s/rad, c2 "
+              HasSubstr("double_pendulum: Double pendulum, with damping\nparameters   c1 = 0.25 N m s/rad, c2 "
                         "= 0.5 N m s/rad,\n             g = 9.81 m/s^2, l1 = 1 m,"));
 }
 

@@ -267,7 +267,10 @@ class CentralField {
       return z[2] * z[2] + z[3] * z[3] / (z[0] * z[0]);
     }
 
-    double guard(int, const double* z) const { return z[0]; }
+    template <class S>
+    S guard(int, const S* z) const {
+      return z[0];
+    }
 
    private:
     P _b;

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
-#include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/systems/registry.hpp"
+#include "support/dual_derivatives.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems::double_pendulum_test {

@@ -1,4 +1,4 @@
-// Every combination of effects that is compiled against a Lagrangian written anew, and what each does to the structure.
+// Combinations of effects against a Lagrangian written anew, and what each does to the structure.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
-#include "orbweaver/ad/derivatives.hpp"
 #include "orbweaver/systems/field_cost.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "support/delegating_system.hpp"
+#include "support/dual_derivatives.hpp"
 #include "systems/samples.hpp"
 
 namespace orbweaver::systems::effects_test {
@@ -178,7 +178,7 @@ struct DuffingLagrangian {
 template <int N, class Lagrangian>
 void expect_equations_of(const std::string& name) {
   std::mt19937 generator(31);
-  for (const std::vector<std::string>& effects : built_effects(name)) {
+  for (const std::vector<std::string>& effects : combinations_of(name)) {
     SCOPED_TRACE((Built{name, effects}.title()));
     for (int sample = 0; sample < 50; ++sample) {
       const auto parameters = random_parameters(model_info(name), generator, effects);
@@ -215,7 +215,7 @@ TEST(Effects, EnergiesFollowFromTheLagrangian) {
   std::mt19937 generator(32);
   const auto expect_energy = [&]<int N, class Lagrangian>(std::integral_constant<int, N>, const std::string& name,
                                                           const Lagrangian&) {
-    for (const std::vector<std::string>& effects : built_effects(name)) {
+    for (const std::vector<std::string>& effects : combinations_of(name)) {
       const auto parameters = random_parameters(model_info(name), generator, effects);
       const auto system = make_system(name, parameters, effects);
       if (!system->structure().conservative()) continue;

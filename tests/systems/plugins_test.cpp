@@ -109,11 +109,9 @@ TEST(Description, IsOneLineOfText) {
 
 TEST(PluginSystem, ThatContradictsItselfIsWrongInput) {
   static const ModelInfo info = info_with("contradicts_itself", "");
-  static const std::vector<std::string> effects;
   const std::array lines{RegistryLine{
-      []() -> const ModelInfo& { return info; }, []() -> const std::vector<std::string>& { return effects; },
-      [](const Bound&) -> std::shared_ptr<const System> { throw core::MisuseError("as many coordinates"); },
-      [] { return std::string("ContradictsItself"); }}};
+      []() -> const ModelInfo& { return info; },
+      [](const Bound&) -> std::shared_ptr<const System> { throw core::MisuseError("as many coordinates"); }}};
   add_registry_lines(lines);
   EXPECT_THAT([] { static_cast<void>(make_system("contradicts_itself")); },
               ThrowsMessage<core::InputError>(HasSubstr("the plugin's system 'contradicts_itself': ")));

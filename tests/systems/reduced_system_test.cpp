@@ -13,6 +13,7 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/model/evaluate.hpp"
+#include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/identities.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "orbweaver/systems/registry.hpp"
@@ -193,7 +194,8 @@ TEST(ReducedSystem, FormulasAreThoseOfItsField) {
       const Formulas formulas = dynamic_cast<const FormulaSystem&>(*system).formulas();
       ASSERT_EQ(formulas.conserved.size(), 1U);
       const std::vector<double> inputs(y), parameters(formulas.values);
-      const std::vector<double> energy = model::evaluate<double>(formulas.graph, formulas.conserved, inputs, parameters);
+      const std::vector<double> energy =
+          model::evaluate<double>(formulas.graph, formulas.conserved, inputs, parameters);
       EXPECT_NEAR(energy.front(), system->conserved(0, y), 1e-14 * (1.0 + std::abs(energy.front())));
       VectorXd gradient(system->dimension());
       system->conserved_gradient(0, y, {gradient.data(), y.size()});

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/model/evaluate.hpp"
+#include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 
@@ -28,17 +30,36 @@ struct Built {
   }
 };
 
-/// All that is compiled: what is known before a test has loaded a plugin.
+/// Effects of a system: none, each alone, any two, all.
+inline std::vector<std::vector<std::string>> combinations_of(const std::string& name) {
+  std::vector<std::string> all;
+  for (const Effect& effect : model_info(name).effects) all.push_back(effect.name);
+  std::vector<std::vector<std::string>> combinations{{}};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    combinations.push_back({all[i]});
+    for (std::size_t j = i + 1; j < all.size(); ++j) combinations.push_back({all[i], all[j]});
+  }
+  if (all.size() > 2) combinations.push_back(all);
+  return combinations;
+}
+
 inline const std::vector<Built>& all_built() {
   static const std::vector<Built> built = [] {
     std::vector<Built> all;
     for (const std::string& name : system_names())
-      for (const std::vector<std::string>& effects : built_effects(name)) all.push_back({name, effects});
+      for (const std::vector<std::string>& effects : combinations_of(name)) all.push_back({name, effects});
     return all;
   }();
   return built;
 }
-inline const std::vector<Built>& built_before_tests = all_built();
+
+/// Nodes of a system's graph at one state, in another arithmetic.
+template <class S>
+std::vector<S> evaluated(const System& system, const std::vector<S>& state, const std::vector<int> Formulas::*nodes) {
+  const Formulas formulas = dynamic_cast<const FormulaSystem&>(system).formulas();
+  const std::vector<S> parameters(formulas.values.begin(), formulas.values.end());
+  return model::evaluate<S>(formulas.graph, formulas.*nodes, std::span<const S>(state), std::span<const S>(parameters));
+}
 
 /// A whole number, which can neither be drawn nor differentiated by.
 inline bool is_count(const std::string& parameter) { return parameter == "links"; }

@@ -66,9 +66,9 @@ class BlockProgram {
  private:
   class Compiler;
 
-  std::size_t _inputs = 0;   // rows needed: the largest number of an input, and one
+  std::size_t _inputs = 0;  // rows needed: the largest number of an input, and one
   std::size_t _outputs = 0;
-  std::size_t _registers = 0;     // inputs, outputs and what lies between
+  std::size_t _registers = 0;      // inputs, outputs and what lies between
   std::vector<double> _constants;  // the first scalars; parameters and what is computed from both follow
   std::size_t _parameters = 0;
   std::vector<Instruction> _fixed;  // its registers are scalars

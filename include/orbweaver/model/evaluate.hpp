@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "orbweaver/core/error.hpp"
 #include "orbweaver/model/graph.hpp"
 
 namespace orbweaver::model {
@@ -45,7 +46,12 @@ template <class S>
       case Operation::asin: values[n] = asin(a()); break;
       case Operation::acos: values[n] = acos(a()); break;
       case Operation::atan: values[n] = atan(a()); break;
-      case Operation::erf: values[n] = erf(a()); break;
+      case Operation::erf:
+        if constexpr (requires(const S& x) { erf(x); })
+          values[n] = erf(a());
+        else
+          core::require(false, "an arithmetic without the error function");
+        break;
     }
   }
   std::vector<S> results;

@@ -27,8 +27,8 @@ class Scope {
   /// A whole number, for indices.
   void size(const std::string& name, long value, const std::string& place);
   /// What a name, or a name with arguments, is short for. With `adds` it is added to what the name is short for.
-  void define(const std::string& name, std::vector<std::string> arguments, PlacedFormula formula, const Indices& indices,
-              bool adds = false);
+  void define(const std::string& name, std::vector<std::string> arguments, PlacedFormula formula,
+              const Indices& indices, bool adds = false);
   /// What coordinates of the name are beyond their ends: of a ring, or given by a formula at an index.
   struct Ends {
     long first = 1;

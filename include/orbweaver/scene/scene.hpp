@@ -11,6 +11,7 @@
 
 #include "orbweaver/scene/loop_samples.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "orbweaver/systems/text/model_text.hpp"
 
 namespace orbweaver::scene {
 
@@ -18,6 +19,7 @@ struct SystemChoice {
   std::string name;
   std::string plugin;         ///< the file that brings it, as the scene says; "" for a system of the program
   std::string plugin_source;  ///< the hash of that plugin's source (systems::Plugin)
+  std::shared_ptr<const systems::ModelText> model;  ///< of the scene's own equations; null for another system
   std::map<std::string, double> parameters;
   std::vector<std::string> effects;
   /// Scales that the scene gives, by name: time, a coordinate, a conserved quantity. The others are found (`auto`).
@@ -27,6 +29,8 @@ struct SystemChoice {
 
 /// The system with its parameters, effects and kind of families, in their units.
 [[nodiscard]] std::shared_ptr<const systems::System> bound_system(const SystemChoice& choice);
+/// What may be asked of it.
+[[nodiscard]] const systems::ModelInfo& info_of(const SystemChoice& choice);
 
 /// Where the search for equilibria starts, and what the user calls the families found there.
 struct FixedPoints {

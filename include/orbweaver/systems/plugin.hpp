@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "orbweaver/ad/field_functions.hpp"
+#include "orbweaver/model/field_functions.hpp"
 #include "orbweaver/systems/model/model_system.hpp"
 #include "orbweaver/systems/model/plugin_table.hpp"
 
@@ -25,18 +25,20 @@ inline constexpr std::array plugin_lines{registry_line<Models>...};
 template <class... Models>
 struct OneScalar {
   template <class Model>
-  static void formulas(const typename Model::template With<double>& model, const ad::Lanes* z, ad::Lanes* f) {
+  static void formulas(const typename Model::template With<model::Recorded>& own, const model::Recorded* z,
+                       model::Recorded* f) {
     static_assert(
-        requires { model.field(z, f); },
+        requires { own.field(z, f); },
         "a model has `template <class S> void field(const S* z, S* f) const`, f being dz/dt, a function of the "
         "present state: delays, differential-algebraic equations and maps are not done (docs/limits.md)");
-    if constexpr (requires { model.field(z, f); }) model.field(z, f);
+    if constexpr (requires { own.field(z, f); }) own.field(z, f);
     [&]<int... K>(std::integer_sequence<int, K...>) {
-      (static_cast<void>(model.template conserved<K, ad::Lanes>(z)), ...);
+      (static_cast<void>(own.template conserved<K, model::Recorded>(z)), ...);
     }
     (std::make_integer_sequence<int, Model::quantities>{});
   }
-  static void all(const ad::Lanes* z, ad::Lanes* f, const typename Models::template With<double>&... models) {
+  static void all(const model::Recorded* z, model::Recorded* f,
+                  const typename Models::template With<model::Recorded>&... models) {
     (formulas<Models>(models, z, f), ...);
   }
 };

@@ -7,6 +7,7 @@
 
 #include "orbweaver/systems/model_info.hpp"
 #include "orbweaver/systems/system.hpp"
+#include "orbweaver/systems/text/model_text.hpp"
 
 namespace orbweaver::systems {
 
@@ -16,16 +17,15 @@ namespace orbweaver::systems {
 /// What may be asked of the system `name`. Throws core::InputError naming the known ones.
 [[nodiscard]] const ModelInfo& model_info(const std::string& name);
 
-/// The combinations of its effects that the system `name` is compiled with, the empty one first.
-[[nodiscard]] std::vector<std::vector<std::string>> built_effects(const std::string& name);
+/// The text of a system of the program (docs/models.md); "" of a plugin's. Throws core::InputError as model_info.
+[[nodiscard]] std::string system_text(const std::string& name);
 
-/// The C++ type of the system `name` with effects, "orbweaver::systems::Duffing<orbweaver::systems::Damping<1>>", also
-/// where it is not compiled with them together. Throws core::InputError on an unknown system or effect, one named
-/// twice, or a system that has none.
-[[nodiscard]] std::string type_with_effects(const std::string& name, const std::vector<std::string>& effects);
+/// Adds the model of a scene, by its name; a later one of that name takes its place. Throws core::InputError with the
+/// text's place where the name is that of another system, or its formulas are wrong.
+void add_model(const std::shared_ptr<const ModelText>& text);
 
 /// Binds parameters and effects, in any order of the effects. Throws core::InputError on an unknown system, parameter
-/// or effect, an effect named twice, effects that are not compiled together, or a value out of range, saying what is
+/// or effect, an effect named twice, or a value out of range, saying what is
 /// known or allowed; the same for the parameters that move along families.
 [[nodiscard]] std::shared_ptr<const System> make_system(const std::string& name,
                                                         const std::map<std::string, double>& parameters = {},

@@ -77,7 +77,10 @@ class Builder {
   void name_sizes() {
     for (const TermsText* terms : _terms)
       for (const ParameterText& size : terms->parameters)
-        if (size.is_whole) _scope.size(size.parameter.name, std::lround(value_of(size.parameter)), _text.place);
+        if (size.is_whole) {
+          _scope.size(size.parameter.name, std::lround(value_of(size.parameter)), _text.place);
+          _built.sizes[size.parameter.name] = value_of(size.parameter);
+        }
   }
 
   /// What a line says for each of its indices.
@@ -142,7 +145,8 @@ class Builder {
     } else {
       for (const std::string& name : _coordinates)
         if (!_orders.contains(name))
-          refuse(_text.place, fmt::format("expected an equation for the coordinate {0}, got none; add {0}' = ...", name));
+          refuse(_text.place,
+                 fmt::format("expected an equation for the coordinate {0}, got none; add {0}' = ...", name));
       for (const std::string& name : _in_order)
         if (std::find(_coordinates.begin(), _coordinates.end(), name) == _coordinates.end())
           refuse(_text.place, fmt::format("the equation of `{}` has no coordinate; add it to `coordinates`", name));
@@ -155,19 +159,20 @@ class Builder {
     if (_text.terms.hamiltonian) {
       rates = expanded(_text.momenta);
       if (rates.size() != _coordinates.size())
-        refuse(_text.place, fmt::format("expected as many `momenta` as coordinates, {}, got {}", _coordinates.size(),
-                                        rates.size()));
+        refuse(_text.place,
+               fmt::format("expected as many `momenta` as coordinates, {}, got {}", _coordinates.size(), rates.size()));
       second.clear();
     } else if (rates.empty()) {
       for (const std::string& name : second) rates.push_back(name + "_t");
     } else if (rates.size() != second.size()) {
-      refuse(_text.place, fmt::format("expected as many `velocities` as coordinates with a second derivative, {}, got {}",
-                                      second.size(), rates.size()));
+      refuse(_text.place,
+             fmt::format("expected as many `velocities` as coordinates with a second derivative, {}, got {}",
+                         second.size(), rates.size()));
     }
     _states.insert(_states.end(), rates.begin(), rates.end());
     if (_states.size() > most_coordinates)
-      refuse(_text.place, fmt::format("expected at most {} coordinates of the state, got {}", most_coordinates,
-                                      _states.size()));
+      refuse(_text.place,
+             fmt::format("expected at most {} coordinates of the state, got {}", most_coordinates, _states.size()));
     for (std::size_t i = 0; i < _states.size(); ++i)
       _scope.name(_states[i], graph().input(static_cast<int>(i)), _text.place);
     for (std::size_t i = 0; i < second.size(); ++i)
@@ -271,8 +276,7 @@ class Builder {
   int divergence(const std::vector<int>& nodes, std::size_t first) {
     int sum = graph().constant(0.0);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const int slope =
-          model::gradient(graph(), nodes[i], std::vector<int>{static_cast<int>(first + i)}).front();
+      const int slope = model::gradient(graph(), nodes[i], std::vector<int>{static_cast<int>(first + i)}).front();
       sum = graph().add(sum, or_zero(slope));
     }
     return sum;
@@ -285,21 +289,21 @@ class Builder {
     const std::vector<int> acting = forces();
     std::vector<int> momenta;
     for (std::size_t i = 0; i < n; ++i) momenta.push_back(or_zero(slopes[n + i]));
-    // d/dt (dL/dv) = M a + (its change along q and t) = dL/dq + Q
-    const std::vector<int> second = model::jacobian(graph(), momenta, static_cast<int>(2 * n) + 2);
-    const std::size_t width = 2 * n + 2;
+    // d/dt (dL/dv) = M a + (its change as q moves with v, and t) = dL/dq + Q
+    const std::size_t width = 2 * n;
+    const std::vector<int> second = model::jacobian(graph(), momenta, static_cast<int>(width));
+    model::Direction moving;
+    moving.inputs.assign(width + 2, -1);
+    for (std::size_t i = 0; i < n; ++i) moving.inputs[i] = graph().input(static_cast<int>(n + i));
+    for (const TermsText* terms : _terms)
+      if (terms->frequency) moving.inputs[width] = frequency();
+    moving.inputs[width + 1] = graph().constant(1.0);
+    const std::vector<int> change = model::derivatives_along(graph(), momenta, moving);
     std::vector<std::vector<int>> mass(n, std::vector<int>(n));
     std::vector<int> right;
     for (std::size_t i = 0; i < n; ++i) {
-      int sum = graph().add(or_zero(slopes[i]), acting[i]);
-      for (std::size_t j = 0; j < n; ++j) {
-        mass[i][j] = second[i * width + n + j];
-        sum = graph().subtract(sum, graph().multiply(second[i * width + j], graph().input(static_cast<int>(n + j))));
-      }
-      sum = graph().subtract(sum, second[i * width + 2 * n + 1]);
-      const int by_phase = second[i * width + 2 * n];
-      if (!graph().is_constant(by_phase, 0.0)) sum = graph().subtract(sum, graph().multiply(by_phase, frequency()));
-      right.push_back(sum);
+      for (std::size_t j = 0; j < n; ++j) mass[i][j] = second[i * width + n + j];
+      right.push_back(graph().subtract(graph().add(or_zero(slopes[i]), acting[i]), or_zero(change[i])));
     }
     const std::vector<int> rates = solved(mass, right);
     if (_has_forces) _built.growth = divergence(solved(mass, acting), n);
@@ -320,8 +324,8 @@ class Builder {
     const std::size_t n = right.size();
     for (std::size_t a = 0; a < n; ++a) {
       if (graph().is_constant(mass[a][a], 0.0))
-        refuse(_text.place,
-               fmt::format("expected a kinetic energy in the rate of {}, got a Lagrangian without it", _coordinates[a]));
+        refuse(_text.place, fmt::format("expected a kinetic energy in the rate of {}, got a Lagrangian without it",
+                                        _coordinates[a]));
       for (std::size_t b = a + 1; b < n; ++b) {
         if (graph().is_constant(mass[b][a], 0.0)) continue;
         const int factor = graph().divide(mass[b][a], mass[a][a]);
@@ -378,7 +382,8 @@ class Builder {
   }
 
   void take_quantities() {
-    for (const auto& [name, formula] : _text.conserved) _built.quantities.push_back({name, _scope.evaluate(formula), true});
+    for (const auto& [name, formula] : _text.conserved)
+      _built.quantities.push_back({name, _scope.evaluate(formula), true});
   }
 
   int frequency() {
@@ -398,11 +403,12 @@ class Builder {
       if (*other >= 0) outputs.push_back(*other);
     const model::Phased phased = model::with_phase(graph(), outputs, _phase + 1, _phase, given, _values);
     if (!phased.obstacle.empty())
-      refuse(_text.place,
-             fmt::format("expected time as c*t + something within sin and cos, the numbers c rational multiples of one "
-                         "another, got {}; a drive of another kind is a pair of coordinates, u' = v + u*(1 - u^2 - v^2) "
-                         "and v' = -u + v*(1 - u^2 - v^2)",
-                         phased.obstacle));
+      refuse(
+          _text.place,
+          fmt::format("expected time as c*t + something within sin and cos, the numbers c rational multiples of one "
+                      "another, got {}; a drive of another kind is a pair of coordinates, u' = v + u*(1 - u^2 - v^2) "
+                      "and v' = -u + v*(1 - u^2 - v^2)",
+                      phased.obstacle));
     std::copy_n(phased.outputs.begin(), rates, _built.field.begin());
     std::size_t next = rates;
     for (int* other : others)
@@ -479,6 +485,7 @@ class Builder {
     ModelInfo& info = _built.info;
     info.name = _text.name;
     info.title = _text.title;
+    if (!_built.effects.empty()) info.title += fmt::format(" with {}", fmt::join(_built.effects, ", "));
     info.meaning = _text.meaning;
     info.state_names = _states;
     info.winding_names = _windings;

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "orbweaver/ad/rounded.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/model/derivatives.hpp"
 #include "orbweaver/model/evaluate.hpp"
+#include "orbweaver/model/rounded.hpp"
 #include "orbweaver/numerics/random.hpp"
 #include "trial_states.hpp"
 
@@ -17,7 +17,7 @@ namespace orbweaver::systems {
 
 namespace {
 
-using ad::Rounded;
+using model::Rounded;
 using Numbers = std::vector<Rounded>;
 
 constexpr std::uint64_t seed = 20261128;
@@ -106,8 +106,7 @@ class Trials {
 /// f(S z) - S' f(z), or with f(R z) + R' f(z).
 std::vector<int> defect(BuiltModel& model, const BuiltModel::Image& image) {
   model::Graph& graph = model.graph;
-  const std::vector<int> moved =
-      model::substituted(graph, model.field, {.inputs = image.nodes, .parameters = {}});
+  const std::vector<int> moved = model::substituted(graph, model.field, {.inputs = image.nodes, .parameters = {}});
   std::vector<int> nodes;
   for (std::size_t i = 0; i < model.field.size(); ++i) {
     const std::vector<int> one{image.nodes[i]};
@@ -130,11 +129,11 @@ AffineMap affine_of(BuiltModel& model, const BuiltModel::Image& image, const std
   const std::vector<double> origin(static_cast<std::size_t>(d), 0.0);
   const std::vector<double> matrix =
       model::evaluate<double>(model.graph, slopes, std::span<const double>(origin), std::span<const double>(values));
-  const std::vector<double> offset = model::evaluate<double>(
-      model.graph, image.nodes, std::span<const double>(origin), std::span<const double>(values));
+  const std::vector<double> offset = model::evaluate<double>(model.graph, image.nodes, std::span<const double>(origin),
+                                                             std::span<const double>(values));
   AffineMap map;
-  map.matrix = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(matrix.data(),
-                                                                                                        d, d);
+  map.matrix =
+      Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(matrix.data(), d, d);
   map.offset = Eigen::Map<const Eigen::VectorXd>(offset.data(), d);
   return map;
 }

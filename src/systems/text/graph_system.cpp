@@ -1,6 +1,7 @@
 #include "orbweaver/systems/text/graph_system.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -24,18 +25,18 @@ class Compiled {
   BuiltModel model;
   std::vector<int> conserved;
 
-  using Make = std::vector<int> (Compiled::*)(const std::string&);
+  /// Of what there is one program; of the others one a number: a quantity, a guard, a parameter.
+  enum Kind : std::size_t { field, linear, second, action, quantity, gradient, guard, by_parameter, kinds };
 
-  const model::BlockProgram& field() { return program("field", {}, &Compiled::field_nodes); }
-  const model::BlockProgram& linear() { return program("linear", {}, &Compiled::linear_nodes); }
-  const model::BlockProgram& second() { return program("second", {}, &Compiled::second_nodes); }
-  const model::BlockProgram& by_parameter(const std::string& name) {
-    return program("by", name, &Compiled::parameter_nodes);
+  const model::BlockProgram& program(Kind kind, std::size_t number) {
+    std::vector<std::unique_ptr<const model::BlockProgram>>& own = _programs[kind];
+    if (own.size() <= number) own.resize(number + 1);
+    if (!own[number]) {
+      const std::vector<int> nodes = nodes_of(kind, number);
+      own[number] = std::make_unique<const model::BlockProgram>(model.graph, nodes);
+    }
+    return *own[number];
   }
-  const model::BlockProgram& quantity(int k) { return program("quantity", std::to_string(k), &Compiled::quantity_nodes); }
-  const model::BlockProgram& gradient(int k) { return program("gradient", std::to_string(k), &Compiled::gradient_nodes); }
-  const model::BlockProgram& guard(int k) { return program("guard", std::to_string(k), &Compiled::guard_nodes); }
-  const model::BlockProgram& action() { return program("action", {}, &Compiled::action_nodes); }
 
   [[nodiscard]] int dimension() const { return static_cast<int>(model.field.size()); }
   /// The input of number 0 of the weights, behind the state.
@@ -48,23 +49,26 @@ class Compiled {
   }
 
  private:
-  const model::BlockProgram& program(const char* kind, const std::string& which, Make make) {
-    std::unique_ptr<const model::BlockProgram>& own = _programs[{kind, which}];
-    if (!own) {
-      const std::vector<int> nodes = (this->*make)(which);
-      own = std::make_unique<const model::BlockProgram>(model.graph, nodes);
+  std::vector<int> nodes_of(Kind kind, std::size_t number) {
+    switch (kind) {
+      case linear: return linear_nodes();
+      case second: return second_nodes();
+      case action: return {model.action};
+      case quantity: return {conserved[number]};
+      case gradient: return gradient_nodes(number);
+      case guard: return {model.guards[number]};
+      case by_parameter: return parameter_nodes(number);
+      default: return model.field;
     }
-    return *own;
   }
 
-  std::vector<int> field_nodes(const std::string&) { return model.field; }
-  std::vector<int> linear_nodes(const std::string&) {
+  std::vector<int> linear_nodes() {
     std::vector<int> nodes = model.field;
     const std::vector<int> slopes = model::jacobian(model.graph, model.field, dimension());
     nodes.insert(nodes.end(), slopes.begin(), slopes.end());
     return nodes;
   }
-  std::vector<int> second_nodes(const std::string&) {
+  std::vector<int> second_nodes() {
     model::Graph& graph = model.graph;
     const auto d = static_cast<std::size_t>(dimension());
     int sum = graph.constant(0.0);
@@ -77,18 +81,15 @@ class Compiled {
       for (std::size_t m = 0; m < d; ++m) nodes[l * d + m] = bends[std::max(l, m) * d + std::min(l, m)];
     return nodes;
   }
-  std::vector<int> parameter_nodes(const std::string& name) {
+  std::vector<int> parameter_nodes(std::size_t number) {
     model::Direction direction;
-    for (const std::string& own : model.parameters)
-      direction.parameters.push_back(own == name ? model.graph.constant(1.0) : -1);
+    direction.parameters.assign(model.parameters.size(), -1);
+    direction.parameters[number] = model.graph.constant(1.0);
     return or_zero(model::derivatives_along(model.graph, model.field, direction));
   }
-  std::vector<int> quantity_nodes(const std::string& k) { return {conserved[std::stoul(k)]}; }
-  std::vector<int> gradient_nodes(const std::string& k) {
-    return or_zero(model::gradient(model.graph, conserved[std::stoul(k)], states()));
+  std::vector<int> gradient_nodes(std::size_t number) {
+    return or_zero(model::gradient(model.graph, conserved[number], states()));
   }
-  std::vector<int> guard_nodes(const std::string& k) { return {model.guards[std::stoul(k)]}; }
-  std::vector<int> action_nodes(const std::string&) { return {model.action}; }
 
   [[nodiscard]] std::vector<int> states() const {
     std::vector<int> numbers;
@@ -108,8 +109,7 @@ class Compiled {
     _formulas.field = model.field;
     _formulas.parameters = model.parameters;
     _formulas.conserved = conserved;
-    for (std::size_t k = 0; k < conserved.size(); ++k)
-      _formulas.conserved_gradients.push_back(gradient_nodes(std::to_string(k)));
+    for (std::size_t k = 0; k < conserved.size(); ++k) _formulas.conserved_gradients.push_back(gradient_nodes(k));
     _formulas.variations.resize(model.field.size() * model.field.size());
     for (int c = 0; c < d; ++c) {
       model::Direction direction;
@@ -121,22 +121,36 @@ class Compiled {
     _formulas.graph = graph;
   }
 
-  std::map<std::pair<std::string, std::string>, std::unique_ptr<const model::BlockProgram>> _programs;
+  std::array<std::vector<std::unique_ptr<const model::BlockProgram>>, kinds> _programs;
   Formulas _formulas;
 };
 
-/// Rows of `nodes` numbers behind one another.
+/// The rows of one call: of `nodes` numbers behind one another. One at a time.
 template <class Number>
-void add_rows(std::vector<Number*>& rows, Number* first, std::size_t count, std::size_t nodes) {
-  for (std::size_t i = 0; i < count; ++i) rows.push_back(first + i * nodes);
-}
+class Rows {
+ public:
+  Rows& add(Number* first, std::size_t count, std::size_t nodes) {
+    for (std::size_t i = 0; i < count; ++i) _rows.push_back(first + i * nodes);
+    return *this;
+  }
+  Rows& clear() {
+    _rows.clear();
+    return *this;
+  }
+  operator std::span<Number* const>() const { return _rows; }
+
+ private:
+  std::vector<Number*> _rows;
+};
 
 class GraphSystem final : public System, public QuadSystem, public FormulaSystem {
  public:
-  GraphSystem(std::shared_ptr<Compiled> compiled, Structure structure, std::vector<double> values, FamilyScalars scalars)
+  GraphSystem(std::shared_ptr<Compiled> compiled, Structure structure, std::vector<double> values,
+              FamilyScalars scalars)
       : _compiled(std::move(compiled)),
         _structure(std::move(structure)),
         _values(std::move(values)),
+        _parameters(model().sizes),
         _scalars(std::move(scalars)) {
     for (std::size_t n = 0; n < _values.size(); ++n) _parameters[model().parameters[n]] = _values[n];
   }
@@ -147,39 +161,33 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
   [[nodiscard]] const FamilyScalars& family_scalars() const override { return _scalars; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
-    std::vector<double*> out;
-    add_rows(out, f, size(), nodes);
-    run(_compiled->field(), nodes, states(nodes, z), out);
+    run(Compiled::field, 0, nodes, states(nodes, z), results().add(f, size(), nodes));
   }
 
   void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
-    std::vector<double*> out;
-    add_rows(out, f, size(), nodes);
-    add_rows(out, jacobian, size() * size(), nodes);
-    run(_compiled->linear(), nodes, states(nodes, z), out);
+    run(Compiled::linear, 0, nodes, states(nodes, z),
+        results().add(f, size(), nodes).add(jacobian, size() * size(), nodes));
   }
 
   void second_derivatives(std::size_t nodes, const double* z, const double* weights,
                           double* contracted) const override {
-    std::vector<const double*> in = states(nodes, z);
-    add_rows(in, weights, size(), nodes);
-    std::vector<double*> out;
-    add_rows(out, contracted, size() * size(), nodes);
-    run(_compiled->second(), nodes, in, out);
+    run(Compiled::second, 0, nodes, states(nodes, z).add(weights, size(), nodes),
+        results().add(contracted, size() * size(), nodes));
   }
 
   void parameter_derivatives(const std::string& name, std::size_t nodes, const double* z,
                              double* derivatives) const override {
-    core::require(_parameters.contains(name), "a field is differentiated by a parameter that it has");
-    std::vector<double*> out;
-    add_rows(out, derivatives, size(), nodes);
-    run(_compiled->by_parameter(name), nodes, states(nodes, z), out);
+    const auto at = std::find(model().parameters.begin(), model().parameters.end(), name);
+    core::require(at != model().parameters.end(), "a field is differentiated by a parameter that it has");
+    run(Compiled::by_parameter, static_cast<std::size_t>(at - model().parameters.begin()), nodes, states(nodes, z),
+        results().add(derivatives, size(), nodes));
   }
 
   [[nodiscard]] std::shared_ptr<const System> with_parameters(
       const std::map<std::string, double>& values) const override {
     std::vector<double> moved = _values;
     for (const auto& [name, value] : values) {
+      if (const auto size = model().sizes.find(name); size != model().sizes.end() && size->second == value) continue;
       const auto at = std::find(model().parameters.begin(), model().parameters.end(), name);
       core::require(at != model().parameters.end(), "a system moves parameters that it has");
       moved[static_cast<std::size_t>(at - model().parameters.begin())] = value;
@@ -189,25 +197,24 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
 
   [[nodiscard]] double conserved(int k, std::span<const double> z) const override {
     require_quantity(k);
-    return one(_compiled->quantity(k), z);
+    return one(Compiled::quantity, k, z);
   }
   void conserved_gradient(int k, std::span<const double> z, std::span<double> gradient) const override {
     conserved_gradients(k, 1, z.data(), gradient.data());
   }
   void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const override {
     require_quantity(k);
-    std::vector<double*> out;
-    add_rows(out, gradients, size(), nodes);
-    run(_compiled->gradient(k), nodes, states(nodes, z), out);
+    run(Compiled::gradient, static_cast<std::size_t>(k), nodes, states(nodes, z),
+        results().add(gradients, size(), nodes));
   }
 
   [[nodiscard]] double guard(int k, std::span<const double> z) const override {
     if (k < 0 || k >= static_cast<int>(_structure.guards.size())) return System::guard(k, z);
-    return one(_compiled->guard(k), z);
+    return one(Compiled::guard, k, z);
   }
 
   [[nodiscard]] double action_density(std::span<const double> z) const override {
-    return model().action < 0 ? std::numeric_limits<double>::quiet_NaN() : one(_compiled->action(), z);
+    return model().action < 0 ? std::numeric_limits<double>::quiet_NaN() : one(Compiled::action, 0, z);
   }
 
   void linearize(const numerics::QuadVector& z, numerics::QuadVector& f,
@@ -225,23 +232,28 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
                   "the structure names no such conserved quantity");
   }
 
-  [[nodiscard]] std::vector<const double*> states(std::size_t nodes, const double* z) const {
-    std::vector<const double*> in;
-    add_rows(in, z, size(), nodes);
-    return in;
+  /// Valid until the next call, as the results.
+  Rows<const double>& states(std::size_t nodes, const double* z) const {
+    thread_local Rows<const double> rows;
+    return rows.clear().add(z, size(), nodes);
   }
-  [[nodiscard]] double one(const model::BlockProgram& program, std::span<const double> z) const {
+  static Rows<double>& results() {
+    thread_local Rows<double> rows;
+    return rows.clear();
+  }
+  [[nodiscard]] double one(Compiled::Kind kind, int number, std::span<const double> z) const {
     double value = 0.0;
-    std::vector<double*> out{&value};
-    run(program, 1, states(1, z.data()), out);
+    run(kind, static_cast<std::size_t>(number), 1, states(1, z.data()), results().add(&value, 1, 1));
     return value;
   }
 
-  void run(const model::BlockProgram& program, std::size_t nodes, const std::vector<const double*>& in,
-           const std::vector<double*>& out) const {
-    std::vector<double>& scalars = _scalars_of[&program];
-    if (scalars.empty()) scalars = program.scalars(_values);
-    program.run(scalars, nodes, in, out);
+  void run(Compiled::Kind kind, std::size_t number, std::size_t nodes, std::span<const double* const> in,
+           std::span<double* const> out) const {
+    const model::BlockProgram& program = _compiled->program(kind, number);
+    std::vector<std::vector<double>>& own = _scalars_of[kind];
+    if (own.size() <= number) own.resize(number + 1);
+    if (own[number].empty()) own[number] = program.scalars(_values);
+    program.run(own[number], nodes, in, out);
   }
 
   std::shared_ptr<Compiled> _compiled;
@@ -249,20 +261,28 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
   std::vector<double> _values;
   std::map<std::string, double> _parameters;
   FamilyScalars _scalars;
-  mutable std::map<const model::BlockProgram*, std::vector<double>> _scalars_of;
+  mutable std::array<std::vector<std::vector<double>>, Compiled::kinds> _scalars_of;
 };
 
 }  // namespace
 
-std::shared_ptr<const System> system_of(BuiltModel model, const std::map<std::string, double>& values,
-                                        const FamilyScalars& scalars) {
-  std::vector<double> own;
-  for (const std::string& name : model.parameters) own.push_back(values.at(name));
+namespace {
+
+std::vector<double> values_of(const BuiltModel& model, const Bound& bound) {
+  std::vector<double> values;
+  for (const std::string& name : model.parameters) values.push_back(bound[name]);
+  return values;
+}
+
+}  // namespace
+
+std::shared_ptr<const System> system_of(BuiltModel model, const Bound& bound) {
+  std::vector<double> values = values_of(model, bound);
   const auto compiled = std::make_shared<Compiled>();
   compiled->model = std::move(model);
-  Structure structure = found_structure(compiled->model, own, scalars.free, compiled->conserved);
+  Structure structure = found_structure(compiled->model, values, bound.scalars.free, compiled->conserved);
   check(structure, compiled->model.info, structure.dimension, static_cast<int>(structure.conserved.size()));
-  return std::make_shared<const GraphSystem>(compiled, std::move(structure), std::move(own), scalars);
+  return std::make_shared<const GraphSystem>(compiled, std::move(structure), std::move(values), bound.scalars);
 }
 
 std::shared_ptr<const System> system_of(BuiltModel model, Structure structure, const Bound& bound) {
@@ -271,8 +291,7 @@ std::shared_ptr<const System> system_of(BuiltModel model, Structure structure, c
   check(structure, model.info, dimension, quantities);
   if (model.guards.empty()) check_without_guards(structure);
   if (model.action < 0) check_without_action_density(structure);
-  std::vector<double> own;
-  for (const std::string& name : model.parameters) own.push_back(bound[name]);
+  std::vector<double> own = values_of(model, bound);
   const auto compiled = std::make_shared<Compiled>();
   compiled->model = std::move(model);
   for (const BuiltModel::Quantity& quantity : compiled->model.quantities) compiled->conserved.push_back(quantity.node);

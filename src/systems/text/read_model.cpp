@@ -65,11 +65,11 @@ using ReadLeft = std::function<void(const std::string& left, const std::string& 
 void left_of_equation(const std::string& left, const std::string& place, IndexedLine& line) {
   const model::LeftSide side = model::parse_left_side(left, place);
   if (side.order < 1 || side.order > 2)
-    throw core::InputError(fmt::format("{}: expected a derivative to the left, `{}'` or `{}''`, got `{}`{}", place,
-                                       side.name, side.name, left,
-                                       side.order == 0 ? "; what is no derivative belongs into `definitions`, and maps, "
-                                                         "delays and algebraic equations are not done"
-                                                       : ""));
+    throw core::InputError(fmt::format(
+        "{}: expected a derivative to the left, `{}'` or `{}''`, got `{}`{}", place, side.name, side.name, left,
+        side.order == 0 ? "; what is no derivative belongs into `definitions`, and maps, "
+                          "delays and algebraic equations are not done"
+                        : ""));
   line.name = side.name;
   line.index = side.index;
   line.order = side.order;
@@ -88,13 +88,15 @@ void left_of_definition(const std::string& left, const std::string& place, Index
   if (open == std::string::npos) return left_of_value(left, place, line);
   line.name = name_of(trimmed(left.substr(0, open)), place);
   std::string rest = trimmed(left.substr(open + 1));
-  if (!rest.ends_with(')')) throw core::InputError(fmt::format("{}: expected `{}(a, b)`, got `{}`", place, line.name, left));
+  if (!rest.ends_with(')'))
+    throw core::InputError(fmt::format("{}: expected `{}(a, b)`, got `{}`", place, line.name, left));
   rest.pop_back();
   while (true) {
     const std::size_t comma = rest.find(',');
     const std::string argument = name_of(trimmed(rest.substr(0, comma)), place);
     if (std::find(line.arguments.begin(), line.arguments.end(), argument) != line.arguments.end())
-      throw core::InputError(fmt::format("{}: expected arguments with different names, got `{}` twice", place, argument));
+      throw core::InputError(
+          fmt::format("{}: expected arguments with different names, got `{}` twice", place, argument));
     line.arguments.push_back(argument);
     if (comma == std::string::npos) break;
     rest.erase(0, comma + 1);
@@ -102,7 +104,8 @@ void left_of_definition(const std::string& left, const std::string& place, Index
 }
 
 /// Lines as one text: `x' = y` each, `#` begins a comment, what stands deeper below a `for` belongs to it.
-void read_block(const Field& field, const std::string& text, const ReadLeft& read_left, std::vector<IndexedLine>& lines) {
+void read_block(const Field& field, const std::string& text, const ReadLeft& read_left,
+                std::vector<IndexedLine>& lines) {
   struct Open {
     std::size_t depth;
     IndexLoop loop;
@@ -368,9 +371,8 @@ void read_ends(const Field& field, ModelText& text) {
 
 const std::vector<std::string>& model_keys() {
   static const std::vector<std::string> keys = [] {
-    std::vector<std::string> all{"name",       "title",  "meaning", "coordinates", "velocities", "momenta", "angles",
-                                 "conserved",  "action", "ends",    "sizes",       "symmetries", "reversors",
-                                 "effects"};
+    std::vector<std::string> all{"name",      "title",  "meaning", "coordinates", "velocities", "momenta",   "angles",
+                                 "conserved", "action", "ends",    "sizes",       "symmetries", "reversors", "effects"};
     all.insert(all.end(), keys_of_terms.begin(), keys_of_terms.end());
     return all;
   }();
@@ -404,8 +406,8 @@ ModelText read_model(const Field& field, const std::vector<std::string>& also) {
   if (const auto own = keys.find("symmetries")) read_symmetries(*own, false, text);
   if (const auto own = keys.find("reversors")) read_symmetries(*own, true, text);
   if (const auto effects = keys.find("effects"); effects && effects->is_map()) read_effects(*effects, text);
-  const int forms = (text.terms.hamiltonian ? 1 : 0) + (text.terms.lagrangian ? 1 : 0) +
-                    (text.terms.equations.empty() ? 0 : 1);
+  const int forms =
+      (text.terms.hamiltonian ? 1 : 0) + (text.terms.lagrangian ? 1 : 0) + (text.terms.equations.empty() ? 0 : 1);
   if (forms != 1)
     field.fail("one of `equations`, `hamiltonian` and `lagrangian`", forms == 0 ? "none" : "more than one",
                "for example `equations: {x': y, y': -x}`");

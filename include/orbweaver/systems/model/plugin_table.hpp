@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 
-#include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/model/graph.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/model/registered.hpp"
@@ -13,14 +12,14 @@
 namespace orbweaver::systems {
 
 /// Raised whenever what a plugin and the program share changes: this table, System and the types of its functions.
-inline constexpr std::uint32_t plugin_abi = 1;
+inline constexpr std::uint32_t plugin_abi = 2;
 
 /// Sizes of the types that a plugin and the program share, and of the processor's vectors, on which Eigen's alignment
 /// depends: they differ between compilers, their options and packages.
 using PluginLayout = std::array<std::uint32_t, 8>;
 inline constexpr PluginLayout plugin_layout{sizeof(RegistryLine), sizeof(Bound),        sizeof(ModelInfo),
                                             sizeof(Structure),    sizeof(Formulas),     sizeof(model::Node),
-                                            sizeof(ad::Lanes),    EIGEN_MAX_ALIGN_BYTES};
+                                            sizeof(model::Graph), EIGEN_MAX_ALIGN_BYTES};
 
 /// What a plugin exports as `orbweaver_plugin`. Its first three members stay as they are in every version.
 struct PluginTable {

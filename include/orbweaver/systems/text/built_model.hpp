@@ -18,6 +18,7 @@ struct BuiltModel {
   ModelInfo info;
   std::vector<std::string> effects;     ///< that are on, in the text's order
   std::vector<std::string> parameters;  ///< in the order of the graph's
+  std::map<std::string, double> sizes;
   std::vector<int> field;
   /// What may be conserved: the energy first. `claimed` says whether the text says so, or it follows from its form.
   struct Quantity {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "orbweaver/ad/dual.hpp"
+#include "support/dual.hpp"
 #include "orbweaver/ad/lanes.hpp"
 
 /// Derivatives of templated functions by forward automatic differentiation, at one state (S = double) or at as many at

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-namespace orbweaver::ad {
+namespace orbweaver::model {
 
 /// A double, and to first order how far rounding may have brought it from what exact arithmetic would have made of the
 /// same inputs (running error analysis: Higham 2002, Accuracy and Stability of Numerical Algorithms, section 3.3,
@@ -65,4 +65,4 @@ class Rounded {
   double _error = 0.0;
 };
 
-}  // namespace orbweaver::ad
+}  // namespace orbweaver::model

@@ -1,4 +1,4 @@
-#include "orbweaver/ad/derivatives.hpp"
+#include "support/dual_derivatives.hpp"
 
 #include <cmath>
 #include <complex>
@@ -46,7 +46,7 @@ std::array<double, dimension> random_state(std::mt19937& generator) {
   return {uniform(generator), uniform(generator), uniform(generator)};
 }
 
-TEST(Derivatives, JacobianAgreesWithComplexStep) {
+TEST(DualDerivatives, JacobianAgreesWithComplexStep) {
   std::mt19937 generator(11);
   constexpr double h = 1e-200;
   for (int sample = 0; sample < 50; ++sample) {
@@ -65,7 +65,7 @@ TEST(Derivatives, JacobianAgreesWithComplexStep) {
   }
 }
 
-TEST(Derivatives, ConstantComponentHasNoDerivatives) {
+TEST(DualDerivatives, ConstantComponentHasNoDerivatives) {
   const std::array<double, dimension> z{0.3, -0.7, 1.1};
   const auto first = ad::field_jacobian<dimension>(MixedField{}, z.data());
   for (std::size_t l = 0; l < dimension; ++l) EXPECT_EQ(first.jacobian[2 * dimension + l], 0.0);
@@ -74,7 +74,7 @@ TEST(Derivatives, ConstantComponentHasNoDerivatives) {
     EXPECT_EQ(entry, 0.0);
 }
 
-TEST(Derivatives, SecondDerivativesAgreeWithClosedForm) {
+TEST(DualDerivatives, SecondDerivativesAgreeWithClosedForm) {
   std::mt19937 generator(12);
   for (int sample = 0; sample < 20; ++sample) {
     const auto z = random_state(generator);
@@ -91,7 +91,7 @@ TEST(Derivatives, SecondDerivativesAgreeWithClosedForm) {
   }
 }
 
-TEST(Derivatives, SecondDerivativesAreDerivativesOfTheJacobian) {
+TEST(DualDerivatives, SecondDerivativesAreDerivativesOfTheJacobian) {
   // Central differences of order eight; at this h truncation and rounding are both below 1e-12.
   constexpr double h = 0.01;
   constexpr std::array<double, 4> stencil{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
@@ -120,7 +120,7 @@ TEST(Derivatives, SecondDerivativesAreDerivativesOfTheJacobian) {
   }
 }
 
-TEST(Derivatives, GradientAgreesWithClosedForm) {
+TEST(DualDerivatives, GradientAgreesWithClosedForm) {
   const auto function = []<class S>(const S* z) -> S {
     using std::cos;
     return z[0] * z[0] * cos(z[1]) + 4.0;
@@ -132,7 +132,7 @@ TEST(Derivatives, GradientAgreesWithClosedForm) {
   EXPECT_DOUBLE_EQ(result.gradient[1], -z[0] * z[0] * std::sin(z[1]));
 }
 
-TEST(Derivatives, OneDimensionWorks) {
+TEST(DualDerivatives, OneDimensionWorks) {
   const auto field = []<class S>(const S* z, S* f) { f[0] = z[0] * z[0] * z[0]; };
   const double z = 2.0;
   const double weight = 3.0;

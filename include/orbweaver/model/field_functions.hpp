@@ -1,27 +1,15 @@
 #pragma once
 
-#include "orbweaver/ad/dual.hpp"
-#include "orbweaver/ad/lanes.hpp"
 #include "orbweaver/model/recorded.hpp"
 
 /// What the field of a plugin may do beside what its scalars have, and what it may not: that is refused with its reason
 /// where it is compiled. Orbits are followed by derivatives, which must be there everywhere.
-namespace orbweaver::ad {
-
-/// Of a positive base: an exponent that may vary, as a parameter does.
-template <class S, int D>
-Dual<S, D> pow(const Dual<S, D>& x, const Dual<S, D>& exponent) {
-  return exp(exponent * log(x));
-}
+namespace orbweaver::model {
 
 template <class T>
 inline constexpr bool is_state_scalar = false;
 template <>
-inline constexpr bool is_state_scalar<Lanes> = true;
-template <>
 inline constexpr bool is_state_scalar<Recorded> = true;
-template <class S, int D>
-inline constexpr bool is_state_scalar<Dual<S, D>> = true;
 
 template <class... Arguments>
 concept WithState = (is_state_scalar<Arguments> || ...);
@@ -84,4 +72,4 @@ ORBWEAVER_NO_BRANCH(!=)
 #undef ORBWEAVER_NOT_SMOOTH
 #undef ORBWEAVER_NO_BRANCH
 
-}  // namespace orbweaver::ad
+}  // namespace orbweaver::model

@@ -1,4 +1,4 @@
-#include "orbweaver/ad/rounded.hpp"
+#include "orbweaver/model/rounded.hpp"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include "orbweaver/numerics/quad.hpp"
 
-namespace orbweaver::ad::rounded_test {
+namespace orbweaver::model::rounded_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -45,4 +45,4 @@ TEST(Rounded, OfTermsThatCancelIsTheirs) {
 }
 
 }  // namespace
-}  // namespace orbweaver::ad::rounded_test
+}  // namespace orbweaver::model::rounded_test

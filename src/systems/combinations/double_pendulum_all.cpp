@@ -1,8 +1,0 @@
-#include "double_pendulum.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
-
-namespace orbweaver::systems {
-
-template struct Registered<DoublePendulum<RodInertia, TorsionSprings, JointDamping, PivotDrive, JointTorque>>;
-
-}  // namespace orbweaver::systems
