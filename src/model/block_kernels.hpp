@@ -12,6 +12,8 @@ using BlockKernel = void (*)(const Instruction* code, std::size_t size, double* 
 
 void run_in_128_bits(const Instruction* code, std::size_t size, double* const* registers, const double* scalars,
                      std::size_t count);
+/// The same bits at one state, without vectors but for functions: registers are numbers.
+void run_at_one_state(const Instruction* code, std::size_t size, double* registers, const double* scalars);
 #if defined(__x86_64__)
 void run_in_256_bits(const Instruction* code, std::size_t size, double* const* registers, const double* scalars,
                      std::size_t count);

@@ -306,4 +306,19 @@ void BlockProgram::run(std::span<const double> scalars, std::size_t states, std:
     for (std::size_t n = 0; n < count; ++n) outputs[k][j + n] = registers[_inputs + k][n];
 }
 
+void BlockProgram::run_one(std::span<const double> scalars, std::span<const double> inputs,
+                           std::initializer_list<std::span<double>> outputs) const {
+  core::require(inputs.size() >= _inputs && scalars.size() == _scalars, "a program is given what it asks for");
+  thread_local std::vector<double> registers;
+  if (registers.size() < _registers) registers.resize(_registers);
+  double* const own = registers.data();
+  for (std::size_t i = 0; i < _inputs; ++i) own[i] = inputs[i];
+  run_at_one_state(_code.data(), _code.size(), own, scalars.data());
+  const double* from = own + _inputs;
+  for (const std::span<double>& row : outputs) {
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = from[k];
+    from += row.size();
+  }
+}
+
 }  // namespace orbweaver::model

@@ -66,6 +66,10 @@ TEST(BlockProgram, AStatesBitsHangOnNothingElse) {
     const std::vector<double> alone = run(program, {}, {{many[j]}}, 2);
     EXPECT_EQ(alone[0], together[j]);
     EXPECT_EQ(alone[1], together[many.size() + j]);
+    std::vector<double> one(2);
+    program.run_one(program.scalars({}), std::vector<double>{many[j]}, {one});
+    EXPECT_EQ(one[0], together[j]);
+    EXPECT_EQ(one[1], together[many.size() + j]);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,10 @@ class BlockProgram {
   /// Writes output k at state j to outputs[k][j], from input i at state j at inputs[i][j]. Outputs overlap nothing.
   void run(std::span<const double> scalars, std::size_t states, std::span<const double* const> inputs,
            std::span<double* const> outputs) const;
+
+  /// The same at one state, for integrators: inputs in a row, outputs in rows behind one another.
+  void run_one(std::span<const double> scalars, std::span<const double> inputs,
+               std::initializer_list<std::span<double>> outputs) const;
 
   /// Operations a state.
   [[nodiscard]] std::size_t operations() const { return _code.size(); }

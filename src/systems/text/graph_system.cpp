@@ -161,10 +161,12 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
   [[nodiscard]] const FamilyScalars& family_scalars() const override { return _scalars; }
 
   void field(std::size_t nodes, const double* z, double* f) const override {
+    if (nodes == 1) return run_one(Compiled::field, 0, z, {{f, size()}});
     run(Compiled::field, 0, nodes, states(nodes, z), results().add(f, size(), nodes));
   }
 
   void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
+    if (nodes == 1) return run_one(Compiled::linear, 0, z, {{f, size()}, {jacobian, size() * size()}});
     run(Compiled::linear, 0, nodes, states(nodes, z),
         results().add(f, size(), nodes).add(jacobian, size() * size(), nodes));
   }
@@ -204,6 +206,7 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
   }
   void conserved_gradients(int k, std::size_t nodes, const double* z, double* gradients) const override {
     require_quantity(k);
+    if (nodes == 1) return run_one(Compiled::gradient, static_cast<std::size_t>(k), z, {{gradients, size()}});
     run(Compiled::gradient, static_cast<std::size_t>(k), nodes, states(nodes, z),
         results().add(gradients, size(), nodes));
   }
@@ -243,17 +246,26 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
   }
   [[nodiscard]] double one(Compiled::Kind kind, int number, std::span<const double> z) const {
     double value = 0.0;
-    run(kind, static_cast<std::size_t>(number), 1, states(1, z.data()), results().add(&value, 1, 1));
+    run_one(kind, static_cast<std::size_t>(number), z.data(), {{&value, 1}});
     return value;
   }
 
   void run(Compiled::Kind kind, std::size_t number, std::size_t nodes, std::span<const double* const> in,
            std::span<double* const> out) const {
     const model::BlockProgram& program = _compiled->program(kind, number);
+    program.run(scalars_of(program, kind, number), nodes, in, out);
+  }
+  void run_one(Compiled::Kind kind, std::size_t number, const double* z,
+               std::initializer_list<std::span<double>> out) const {
+    const model::BlockProgram& program = _compiled->program(kind, number);
+    program.run_one(scalars_of(program, kind, number), {z, size()}, out);
+  }
+  const std::vector<double>& scalars_of(const model::BlockProgram& program, Compiled::Kind kind,
+                                        std::size_t number) const {
     std::vector<std::vector<double>>& own = _scalars_of[kind];
     if (own.size() <= number) own.resize(number + 1);
     if (own[number].empty()) own[number] = program.scalars(_values);
-    program.run(own[number], nodes, in, out);
+    return own[number];
   }
 
   std::shared_ptr<Compiled> _compiled;
