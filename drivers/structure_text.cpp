@@ -73,8 +73,8 @@ std::vector<std::pair<std::string, std::string>> structure_lines(const systems::
 }
 
 std::string parameter_text(const systems::Parameter& parameter, double value) {
-  return fmt::format("{} = {}{} ({})", parameter.name, value, parameter.unit == "1" ? "" : " " + parameter.unit,
-                     parameter.meaning);
+  return fmt::format("{} = {}{}{}", parameter.name, value, parameter.unit == "1" ? "" : " " + parameter.unit,
+                     parameter.meaning.empty() ? "" : fmt::format(" ({})", parameter.meaning));
 }
 
 }  // namespace orbweaver::drivers

@@ -1,12 +1,5 @@
-// The kernel of block_kernels.hpp for vectors of ORBWEAVER_VECTOR_BYTES, compiled for processors that have them. Nothing
-// here may be inline and shared with other sources: they would run it on processors that lack these instructions.
-
-#include <cstdint>
-#include <cstring>
-
-#include "block_kernels.hpp"
-
-namespace orbweaver::model {
+// The kernel of block_kernels.hpp for vectors of ORBWEAVER_VECTOR_BYTES, in a namespace of its own, for processors that
+// have them.
 
 namespace {
 
@@ -19,10 +12,10 @@ Bits bits_of(Vector x) { return reinterpret_cast<Bits>(x); }
 Vector of_bits(Bits x) { return reinterpret_cast<Vector>(x); }
 Vector load(const double* from) {
   Vector x;
-  std::memcpy(&x, from, sizeof x);
+  __builtin_memcpy(&x, from, sizeof x);
   return x;
 }
-void store(double* to, Vector x) { std::memcpy(to, &x, sizeof x); }
+void store(double* to, Vector x) { __builtin_memcpy(to, &x, sizeof x); }
 
 constexpr double to_integer = 0x1.8p52;  // a sum with it has the rounded number in its low bits
 constexpr std::int64_t to_integer_bits = 0x4338000000000000;
@@ -192,9 +185,7 @@ template <class Function>
   for (std::size_t j = 0; j < count; j += width) store(result + j, function(load(a + j), load(b + j)));
 }
 
-}  // namespace
-
-void ORBWEAVER_BLOCK_KERNEL(const Instruction* code, std::size_t size, double* const* registers, const double* scalars,
+void run(const Instruction* code, std::size_t size, double* const* registers, const double* scalars,
                             std::size_t count) {
   for (const Instruction* i = code; i != code + size; ++i) {
     double* r = registers[i->result];
@@ -248,38 +239,4 @@ void ORBWEAVER_BLOCK_KERNEL(const Instruction* code, std::size_t size, double* c
   }
 }
 
-#if ORBWEAVER_VECTOR_BYTES == 16
-void run_at_one_state(const Instruction* code, std::size_t size, double* registers, const double* scalars) {
-  for (const Instruction* i = code; i != code + size; ++i) {
-    double& r = registers[i->result];
-    switch (i->step) {
-      case Step::fill: r = scalars[i->a]; break;
-      case Step::copy: r = registers[i->a]; break;
-      case Step::add_vv: r = registers[i->a] + registers[i->b]; break;
-      case Step::add_vs: r = registers[i->a] + scalars[i->b]; break;
-      case Step::subtract_vv: r = registers[i->a] - registers[i->b]; break;
-      case Step::subtract_vs: r = registers[i->a] - scalars[i->b]; break;
-      case Step::subtract_sv: r = scalars[i->a] - registers[i->b]; break;
-      case Step::multiply_vv: r = registers[i->a] * registers[i->b]; break;
-      case Step::multiply_vs: r = registers[i->a] * scalars[i->b]; break;
-      case Step::divide_vv: r = registers[i->a] / registers[i->b]; break;
-      case Step::divide_vs: r = registers[i->a] / scalars[i->b]; break;
-      case Step::divide_sv: r = scalars[i->a] / registers[i->b]; break;
-      case Step::negate: r = -registers[i->a]; break;
-      case Step::sqrt: r = __builtin_sqrt(registers[i->a]); break;
-      case Step::slope: r = 1.0 - registers[i->a] * registers[i->a]; break;
-      default: {  // functions, by the vectors' own
-        double lanes[2][width];
-        for (double& lane : lanes[0]) lane = registers[i->a];
-        double* rows[2] = {lanes[0], lanes[1]};
-        const Instruction alone{i->step, 0, 0, 1};
-        run_in_128_bits(&alone, 1, rows, scalars, width);
-        r = lanes[0][0];
-        if (i->step == Step::sine_and_cosine) registers[i->b] = lanes[1][0];
-      }
-    }
-  }
-}
-#endif
-
-}  // namespace orbweaver::model
+}  // namespace

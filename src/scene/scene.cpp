@@ -89,10 +89,11 @@ bool hold_model(const std::optional<std::filesystem::path>& folder, YAML::Node r
   YAML::Node model = YAML::LoadFile((*folder / system["model_file"].Scalar()).string());
   for (const auto& value : system["parameters"]) {
     const std::string name = value.first.Scalar();
-    YAML::Node parameters = model["parameters"];
+    YAML::Node parameters;
+    parameters.reset(model["parameters"]);
     for (const auto& effect : model["effects"])
-      if (effect.second["parameters"][name]) parameters = effect.second["parameters"];
-    if (model["sizes"][name]) parameters = model["sizes"];
+      if (const YAML::Node own = effect.second["parameters"]; own && own[name]) parameters.reset(own);
+    if (const YAML::Node sizes = model["sizes"]; sizes && sizes[name]) parameters.reset(sizes);
     if (parameters[name].IsMap())
       parameters[name]["value"] = value.second;
     else

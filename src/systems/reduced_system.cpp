@@ -13,7 +13,7 @@
 #include "orbweaver/model/derivatives.hpp"
 #include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/systems/formulas.hpp"
-#include "orbweaver/systems/model/linearized_formulas.hpp"
+#include "linearized_formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 #include "reduced_formulas.hpp"
 #include "reduced_structure.hpp"

@@ -37,7 +37,7 @@ std::map<std::string, std::string> expected_messages() {
   std::ifstream stream(folder / "messages.txt");
   for (std::string line; std::getline(stream, line);) {
     if (const auto place = line.find(all_systems); place != std::string::npos)
-      line.replace(place, all_systems.size(), document::alternatives(orbweaver::systems::system_names()));
+      line.replace(place, all_systems.size(), orbweaver::document::alternatives(orbweaver::systems::system_names()));
     messages[line.substr(0, line.find(':'))] = line;
   }
   return messages;

@@ -73,7 +73,7 @@ std::string scene_with(const KnownKey& key, const std::string& value) {
 /// As messages have it, for the double pendulum.
 std::string with_names(std::string text) {
   for (const auto& [general, names] : std::vector<std::pair<std::string, std::string>>{
-           {"the program's systems", document::alternatives(orbweaver::systems::system_names())},
+           {"the program's systems", orbweaver::document::alternatives(orbweaver::systems::system_names())},
            {"the system's parameters", "m1, m2, l1, l2 or g"},
            {"the system's coordinates", "th1, th2, w1 or w2"}})
     if (const auto place = text.find(general); place != std::string::npos) text.replace(place, general.size(), names);

@@ -68,9 +68,8 @@ TEST(ModelText, EquationsAreTheField) {
 TEST(ModelText, ABlockSaysTheSame) {
   const auto system = made("equations: |\n  x' = v   # a comment\n  dv/dt = -x\n");
   EXPECT_THAT(field(*system, {1.0, 3.0}), ElementsAre(3.0, -1.0));
-  EXPECT_THAT(
-      refusal("equations: |\n  x' = v\n  v' = -xx\n"),
-      AllOf(HasSubstr("model.yaml:3: equations: column 3"), HasSubstr("got `xx`"), HasSubstr("did you mean `x`?")));
+  EXPECT_THAT(refusal("equations: |\n  x' = v\n  v' = -xx\n"),
+              AllOf(HasSubstr("model.yaml:3: equations: column 3"), HasSubstr("got `xx`")));
 }
 
 TEST(ModelText, AnEnergyIsAHamiltonians) {
@@ -181,7 +180,8 @@ TEST(ModelText, SymmetriesAreHeldAgainstTheField) {
 TEST(ModelText, AnEffectThatIsOffLeavesNoNodes) {
   const std::string ideal = "coordinates: [x], lagrangian: x'^2/2 - k*x^2/2, parameters: {k: 1}";
   const std::string effects =
-      ", effects: {friction: {parameters: {d: 0.1}, forces: {x: -d*x'}}, cubic: {parameters: {b: 2}, lagrangian: "
+      ", effects: {friction: {parameters: {d: {value: 0.1, range: [0, 1]}}, forces: {x: -d*x'}}, cubic: {parameters: "
+      "{b: 2}, lagrangian: "
       "-b*x^4/4}}";
   const BuiltModel plain = build_model(read("{" + ideal + "}"), {}, {});
   const BuiltModel able = build_model(read("{" + ideal + effects + "}"), {}, {});

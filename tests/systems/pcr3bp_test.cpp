@@ -171,8 +171,9 @@ TEST(Pcr3bp, SymmetriesAreThoseOfTheMasses) {
     SCOPED_TRACE(mu);
     const auto system = make_system("pcr3bp", {{"mu", mu}});
     const Structure& structure = system->structure();
-    EXPECT_EQ(names_of(structure.equivariances), mu == 0.5 ? Names{"S"} : Names{});
-    EXPECT_EQ(names_of(structure.reversors), (mu == 0.5 ? Names{"R", "RS"} : Names{"R"}));
+    const bool equal = mu > 0.49999;  // to rounding
+    EXPECT_EQ(names_of(structure.equivariances), equal ? Names{"S"} : Names{});
+    EXPECT_EQ(names_of(structure.reversors), (equal ? Names{"R", "RS"} : Names{"R"}));
     for (const Symmetry& s : structure.equivariances)
       EXPECT_LT(failure(*system, s.map.matrix, 1.0, generator), 1e-14) << s.name;
     for (const Symmetry& r : structure.reversors)

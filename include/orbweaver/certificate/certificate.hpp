@@ -50,8 +50,8 @@ struct Certificate {
   double displaced_growth = unknown;
   double steepness = 0.0;    ///< largest |dH/dz(z(t_m))|; 0 for a system that conserves no energy
   double energy_size = 0.0;  ///< largest |H(z(t_m))|, of which its rounding is a part
-  /// Largest bound on what rounding makes of H(z(t_m)), where terms that cancel too (model/rounded.hpp). 0: not computed,
-  /// as where the drift is within the rounding of its sum, or for a system that does not give its formulas.
+  /// Largest bound on what rounding makes of H(z(t_m)), where terms that cancel too (model/rounded.hpp). 0: not
+  /// computed, as where the drift is within the rounding of its sum, or for a system that does not give its formulas.
   double energy_rounding = 0.0;
 
   // Level::full

@@ -48,8 +48,7 @@ struct Instruction {
 
 /// Nodes of a graph in double precision at many states: each operation runs over a block of states before the next, in
 /// vectors as wide as the processor has. A state's bits depend neither on the other states nor on its place among them
-/// nor on that width: no products are fused, and elementary functions are this file's own (docs/mathematics.md,
-/// "Evaluation").
+/// nor on that width: no products are fused, and elementary functions are its own, after fdlibm and Cephes.
 class BlockProgram {
  public:
   BlockProgram(const Graph& graph, std::span<const int> outputs);

@@ -44,8 +44,8 @@ struct Node {
 /// Evaluating Derivatives, doi:10.1137/1.9780898717761, section 2.2): run by whoever knows an arithmetic. Functions
 /// give numbers of nodes.
 ///
-/// Constants are doubles and exact: what is none (1/3, 0.1, pi) is an operation on constants. Sums with 0, products with
-/// 0 and 1, and operations on constants whose result a double has are done at once; the order of sums and products
+/// Constants are doubles and exact: what is none (1/3, 0.1, pi) is an operation on constants. Sums with 0, products
+/// with 0 and 1, and operations on constants whose result a double has are done at once; the order of sums and products
 /// stays as it is written.
 class Graph {
  public:

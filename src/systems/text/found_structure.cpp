@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -173,14 +174,14 @@ Structure found_structure(BuiltModel& model, const std::vector<double>& values, 
   };
   for (const BuiltModel::Image& image : model.images) {
     if (is_known(image)) continue;
+    AffineMap map = affine_of(model, image, values);
     if (!trials.vanish(defect(model, image))) {
       if (image.if_it_holds || !model.effects.empty()) continue;
       throw core::InputError(
           fmt::format("{}: expected that the field keeps `{}`, got one that does not{}; mend it, or leave it out",
                       image.place, image.name, image.reverses ? " turn round with it" : ""));
     }
-    (image.reverses ? structure.reversors : structure.equivariances)
-        .push_back({image.name, affine_of(model, image, values)});
+    (image.reverses ? structure.reversors : structure.equivariances).push_back({image.name, std::move(map)});
   }
   return structure;
 }

@@ -11,7 +11,7 @@
 #include "orbweaver/model/derivatives.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/model/checks.hpp"
-#include "orbweaver/systems/model/linearized_formulas.hpp"
+#include "linearized_formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
 
 namespace orbweaver::systems {

@@ -1,4 +1,4 @@
-#include "orbweaver/systems/model/linearized_formulas.hpp"
+#include "linearized_formulas.hpp"
 
 #include <vector>
 

@@ -268,7 +268,8 @@ class Builder {
     int action = graph().constant(0.0);
     for (std::size_t i = 0; i < n; ++i)
       action = graph().add(action, graph().multiply(graph().input(static_cast<int>(n + i)), _built.field[i]));
-    if (_has_forces) _built.growth = divergence(acting, n);
+    if (_has_forces) _pushed = acting;
+    _first_pushed = n;
     finish(energy, action, acting);
   }
 
@@ -306,7 +307,8 @@ class Builder {
       right.push_back(graph().subtract(graph().add(or_zero(slopes[i]), acting[i]), or_zero(change[i])));
     }
     const std::vector<int> rates = solved(mass, right);
-    if (_has_forces) _built.growth = divergence(solved(mass, acting), n);
+    if (_has_forces) _pushed = solved(mass, acting);
+    _first_pushed = n;
     int energy = graph().negate(lagrangian);
     int action = graph().constant(0.0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -378,7 +380,7 @@ class Builder {
     }
     _built.field.insert(_built.field.end(), rates.begin(), rates.end());
     if (_text.action) _built.action = _scope.evaluate(*_text.action);
-    _built.growth = divergence(_built.field, 0);
+    _pushed = _built.field;
   }
 
   void take_quantities() {
@@ -398,9 +400,10 @@ class Builder {
       if (terms->frequency && !given) given = _scope.evaluate(*terms->frequency);
     std::vector<int> outputs = _built.field;
     const std::size_t rates = outputs.size();
-    const std::vector<int*> others{&_built.action, &_built.power, &_built.growth};
+    const std::vector<int*> others{&_built.action, &_built.power};
     for (const int* other : others)
       if (*other >= 0) outputs.push_back(*other);
+    outputs.insert(outputs.end(), _pushed.begin(), _pushed.end());
     const model::Phased phased = model::with_phase(graph(), outputs, _phase + 1, _phase, given, _values);
     if (!phased.obstacle.empty())
       refuse(
@@ -413,6 +416,8 @@ class Builder {
     std::size_t next = rates;
     for (int* other : others)
       if (*other >= 0) *other = phased.outputs[next++];
+    for (int& pushed : _pushed) pushed = phased.outputs[next++];
+    if (!_pushed.empty()) _built.growth = divergence(_pushed, _first_pushed);
     _built.is_driven = phased.frequency >= 0;
     if (!_built.is_driven) return;
     _built.field.push_back(phased.frequency);
@@ -512,6 +517,8 @@ class Builder {
   std::vector<double> _values;  // of the parameters
   int _phase = 0;
   bool _has_forces = false;
+  std::vector<int> _pushed;  // rates whose divergence is the growth of volumes, of the inputs from the next on
+  std::size_t _first_pushed = 0;
 };
 
 }  // namespace

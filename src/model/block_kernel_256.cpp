@@ -1,5 +1,0 @@
-#if defined(__x86_64__)
-#define ORBWEAVER_VECTOR_BYTES 32
-#define ORBWEAVER_BLOCK_KERNEL run_in_256_bits
-#include "block_kernels.inl"
-#endif
