@@ -235,6 +235,10 @@ void read_system(const Field& field, const std::optional<std::filesystem::path>&
     system.name = system.model ? system.model->name : name->choice(systems::system_names());
   }
   const bool is_inline = system.model && !file;
+  if (file && name && system.model && name->text("my_model") != system.model->name)
+    name->fail(fmt::format("the model's name, `{}`", system.model->name), name->got(), "leave it out");
+  if (const auto active = keys.find("active"); active && !is_inline)
+    active->fail("effects by the key `effects`, as the equations do not stand in the scene", "`active`", "rename it");
   if (const auto effects = keys.find(is_inline ? "active" : "effects")) read_effects(*effects, system);
   if (is_inline)
     ask_system(field, system);

@@ -405,7 +405,7 @@ ModelText read_model(const Field& field, const std::vector<std::string>& also) {
   if (const auto ends = keys.find("ends")) read_ends(*ends, text);
   if (const auto own = keys.find("symmetries")) read_symmetries(*own, false, text);
   if (const auto own = keys.find("reversors")) read_symmetries(*own, true, text);
-  if (const auto effects = keys.find("effects"); effects && effects->is_map()) read_effects(*effects, text);
+  if (const auto effects = keys.find("effects")) read_effects(*effects, text);
   const int forms =
       (text.terms.hamiltonian ? 1 : 0) + (text.terms.lagrangian ? 1 : 0) + (text.terms.equations.empty() ? 0 : 1);
   if (forms != 1)
