@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "orbweaver/numerics/lagrange.hpp"
 
@@ -11,6 +12,7 @@ namespace orbweaver::survey {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::array<Invariant, 3> variables{Invariant::period, Invariant::level, Invariant::energy};
 /// Nodes on either side of a segment: degree five is the highest that noise of 1e-10 does not spoil at uneven
 /// distances.
 constexpr std::size_t widest = 3;
@@ -60,6 +62,23 @@ bool is_monotone(const std::vector<Invariants>& points, const Window& window, In
   return true;
 }
 
+// The variable that tells best where between the two nodes an orbit lies.
+std::optional<Invariant> best_variable(const std::vector<Invariants>& points, const Window& window,
+                                       std::size_t segment) {
+  std::optional<Invariant> best;
+  double most = 0.0;
+  for (const Invariant variable : variables) {
+    if (!is_monotone(points, window, variable)) continue;
+    const double change = std::abs(points[segment + 1].value(variable) - points[segment].value(variable)) /
+                          points[segment].floor_of(variable);
+    if (change > most) {
+      most = change;
+      best = variable;
+    }
+  }
+  return best;
+}
+
 // Single differences vanish here and there; all of them do not.
 double error_of(const std::vector<Invariants>& points, const Window& window, std::size_t segment, Invariant variable,
                 Invariant value, double at, double best) {
@@ -89,13 +108,9 @@ bool is_between(double from, double to, double value, double margin) {
   return value >= std::min(from, to) - margin && value <= std::max(from, to) + margin;
 }
 
-double allowed_of(const Invariants& x, Invariant invariant, double error) {
-  return errors_of_both * x.floor_of(invariant) + error;
-}
-
 void add_deviation(CurveFit& fit, Invariant invariant, double deviation, double error, const Invariants& x) {
   if (std::isnan(deviation)) return;
-  const double allowed = allowed_of(x, invariant, error);
+  const double allowed = errors_of_both * x.floor_of(invariant) + error;
   const double excess = deviation / allowed;
   if (!(excess >= fit.excess)) return;
   fit.excess = excess;
@@ -115,40 +130,31 @@ CurveFit nowhere() {
 }  // namespace
 
 CurveFit InvariantCurve::fit_beside(const Invariants& x, std::size_t segment) const {
-  CurveFit best = nowhere();
-  double least = infinity;
-  for (std::size_t reach = widest; reach >= 1 && (reach > 1 || std::isinf(least)); --reach) {
+  for (std::size_t reach = widest; reach >= 1; --reach) {
     const Window window = window_around(segment, 2 * reach, _points.size());
-    for (const Invariant variable : all_invariants) {
-      if (!is_monotone(_points, window, variable)) continue;
-      const double at = x.value(variable);
-      if (!is_between(_points[segment].value(variable), _points[segment + 1].value(variable), at,
-                      errors_of_both * x.floor_of(variable)))
-        continue;
-      CurveFit fit;
-      fit.segment = segment;
-      fit.measured = true;
-      double widest_error = 0.0;
-      for (const Invariant invariant : all_invariants) {
-        if (invariant == variable) continue;
-        const double value = interpolated(_points, window, variable, invariant, at);
-        double error = window.count > 2
-                           ? error_of(_points, window, segment, variable, invariant, at, value)
-                           : error_of_chord(_points[segment], _points[segment + 1], variable, invariant, at);
-        if (invariant == Invariant::trace)
-          error = std::fmax(error, error_of_trace(_points, window, variable, at, value));
-        if (std::isnan(error)) continue;
-        fit.measured = fit.measured && error <= x.floor_of(invariant);
-        widest_error = std::fmax(widest_error, allowed_of(x, invariant, error) / x.scale_of(invariant));
-        add_deviation(fit, invariant, std::abs(value - x.value(invariant)), error, x);
-      }
-      if (widest_error < least) {
-        least = widest_error;
-        best = fit;
-      }
+    const std::optional<Invariant> variable = best_variable(_points, window, segment);
+    if (!variable) continue;
+    const Invariants& a = _points[segment];
+    const Invariants& b = _points[segment + 1];
+    const double at = x.value(*variable);
+    if (!is_between(a.value(*variable), b.value(*variable), at, errors_of_both * x.floor_of(*variable)))
+      return nowhere();
+    CurveFit fit;
+    fit.segment = segment;
+    fit.measured = true;
+    for (const Invariant invariant : all_invariants) {
+      if (invariant == *variable) continue;
+      const double value = interpolated(_points, window, *variable, invariant, at);
+      double error = window.count > 2 ? error_of(_points, window, segment, *variable, invariant, at, value)
+                                      : error_of_chord(a, b, *variable, invariant, at);
+      if (invariant == Invariant::trace)
+        error = std::fmax(error, error_of_trace(_points, window, *variable, at, value));
+      if (!std::isnan(error)) fit.measured = fit.measured && error <= x.floor_of(invariant);
+      add_deviation(fit, invariant, std::abs(value - x.value(invariant)), error, x);
     }
+    return fit;
   }
-  return best;
+  return nowhere();
 }
 
 CurveFit InvariantCurve::fit_at_point(const Invariants& x) const {
@@ -174,7 +180,7 @@ CurveFit InvariantCurve::fit_anywhere(const Invariants& x) const {
   if (_points.size() == 1) return fit_at_point(x);
   CurveFit best = nowhere();
   for (std::size_t segment = 0; segment + 1 < _points.size(); ++segment) {
-    const bool may = std::any_of(all_invariants.begin(), all_invariants.end(), [&](Invariant v) {
+    const bool may = std::any_of(variables.begin(), variables.end(), [&](Invariant v) {
       return is_between(_points[segment].value(v), _points[segment + 1].value(v), x.value(v),
                         errors_of_both * x.floor_of(v));
     });

@@ -39,10 +39,10 @@ struct CurveFit {
 
 /// The curve through a family's orbits in the space of invariants.
 ///
-/// Beside each two neighbours one of the numbers is the variable, and the others are interpolated by polynomials
-/// through four or six orbits among which it is monotone. Their error is taken for the largest difference to
-/// polynomials of one or two orbits fewer; of all variables the one counts with which it is least. Where none is
-/// monotone, the chord tells. No arclength is used: chords between orbits that lie elsewhere add up to another one.
+/// Beside each two neighbours the one among period, level and energy that changes most is the variable; the others
+/// are interpolated by polynomials through up to six orbits among which it is monotone. The error is taken for the
+/// largest difference to polynomials of one or two orbits fewer. No arclength is used: chords between orbits that lie
+/// elsewhere add up to another one.
 class InvariantCurve {
  public:
   InvariantCurve() = default;
