@@ -17,7 +17,7 @@ void run_in_128_bits(const Instruction* code, std::size_t size, double* const* r
 
 #if defined(__x86_64__)
 #pragma GCC push_options
-#pragma GCC target("avx2,no-fma")
+#pragma GCC target("avx2,fma")
 namespace in_256_bits {
 #define ORBWEAVER_VECTOR_BYTES 32
 #include "block_kernels.inl"
@@ -31,7 +31,7 @@ void run_in_256_bits(const Instruction* code, std::size_t size, double* const* r
 #pragma GCC pop_options
 
 #pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,prefer-vector-width=512")
+#pragma GCC target("avx512f,avx512dq,fma,prefer-vector-width=512")
 namespace in_512_bits {
 #define ORBWEAVER_VECTOR_BYTES 64
 #include "block_kernels.inl"
@@ -61,6 +61,12 @@ void run_at_one_state(const Instruction* code, std::size_t size, double* registe
       case Step::divide_vv: r = registers[i->a] / registers[i->b]; break;
       case Step::divide_vs: r = registers[i->a] / scalars[i->b]; break;
       case Step::divide_sv: r = scalars[i->a] / registers[i->b]; break;
+      case Step::product_plus_vv: r = __builtin_fma(registers[i->a], registers[i->b], registers[i->c]); break;
+      case Step::product_plus_vs: r = __builtin_fma(registers[i->a], scalars[i->b], registers[i->c]); break;
+      case Step::product_minus_vv: r = __builtin_fma(registers[i->a], registers[i->b], -registers[i->c]); break;
+      case Step::product_minus_vs: r = __builtin_fma(registers[i->a], scalars[i->b], -registers[i->c]); break;
+      case Step::less_product_vv: r = __builtin_fma(-registers[i->a], registers[i->b], registers[i->c]); break;
+      case Step::less_product_vs: r = __builtin_fma(-registers[i->a], scalars[i->b], registers[i->c]); break;
       case Step::negate: r = -registers[i->a]; break;
       case Step::sqrt: r = __builtin_sqrt(registers[i->a]); break;
       case Step::slope: r = 1.0 - registers[i->a] * registers[i->a]; break;

@@ -26,6 +26,11 @@ Vector with_sign_of(Vector x, Vector sign) {
   return of_bits(bits_of(x) | (bits_of(sign) & static_cast<std::int64_t>(0x8000000000000000)));
 }
 
+Vector fused(Vector a, Vector b, Vector c) {
+  for (std::size_t l = 0; l < width; ++l) c[l] = __builtin_fma(a[l], b[l], c[l]);
+  return c;
+}
+
 Vector square_root(Vector x) {
   for (std::size_t l = 0; l < width; ++l) x[l] = __builtin_sqrt(x[l]);
   return x;
@@ -181,6 +186,12 @@ template <class Function>
 
 template <class Function>
 [[gnu::always_inline]] inline void each(std::size_t count, double* result, const double* a, const double* b,
+                                        const double* c, const Function& function) {
+  for (std::size_t j = 0; j < count; j += width) store(result + j, function(load(a + j), load(b + j), load(c + j)));
+}
+
+template <class Function>
+[[gnu::always_inline]] inline void each(std::size_t count, double* result, const double* a, const double* b,
                                         const Function& function) {
   for (std::size_t j = 0; j < count; j += width) store(result + j, function(load(a + j), load(b + j)));
 }
@@ -210,6 +221,27 @@ void run(const Instruction* code, std::size_t size, double* const* registers, co
       case Step::divide_vs: each(count, r, a, [s = all(scalars[i->b])](Vector x) { return x / s; }); break;
       case Step::divide_sv:
         each(count, r, registers[i->b], [s = all(scalars[i->a])](Vector x) { return s / x; });
+        break;
+      case Step::product_plus_vv:
+        each(count, r, a, registers[i->b], registers[i->c],
+             [](Vector x, Vector y, Vector z) { return fused(x, y, z); });
+        break;
+      case Step::product_plus_vs:
+        each(count, r, a, registers[i->c], [s = all(scalars[i->b])](Vector x, Vector z) { return fused(x, s, z); });
+        break;
+      case Step::product_minus_vv:
+        each(count, r, a, registers[i->b], registers[i->c],
+             [](Vector x, Vector y, Vector z) { return fused(x, y, -z); });
+        break;
+      case Step::product_minus_vs:
+        each(count, r, a, registers[i->c], [s = all(scalars[i->b])](Vector x, Vector z) { return fused(x, s, -z); });
+        break;
+      case Step::less_product_vv:
+        each(count, r, a, registers[i->b], registers[i->c],
+             [](Vector x, Vector y, Vector z) { return fused(-x, y, z); });
+        break;
+      case Step::less_product_vs:
+        each(count, r, a, registers[i->c], [s = all(scalars[i->b])](Vector x, Vector z) { return fused(-x, s, z); });
         break;
       case Step::negate: each(count, r, a, [](Vector x) { return -x; }); break;
       case Step::sqrt: each(count, r, a, [](Vector x) { return square_root(x); }); break;

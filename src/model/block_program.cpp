@@ -126,6 +126,7 @@ class BlockProgram::Compiler {
     _needed = needed_for(graph, outputs);
     for (std::size_t n = 0; n < _needed.size(); ++n)
       if (_needed[n] && graph.nodes()[n].operation == Operation::slope) _needed[n - 1] = true;
+    find_fused(outputs);
     place_leaves(outputs.size());
     place_fixed();
     place_moving(outputs);
@@ -138,6 +139,34 @@ class BlockProgram::Compiler {
   /// A slope's operand is the tanh before it.
   [[nodiscard]] int first(std::size_t n) const {
     return node(n).operation == Operation::slope ? static_cast<int>(n) - 1 : node(n).first;
+  }
+
+  /// Products of two things that move, or of one and a scalar, that one sum or difference alone asks for: which.
+  void find_fused(std::span<const int> outputs) {
+    std::vector<int> uses(_needed.size(), 0);
+    for (const int output : outputs) ++uses[static_cast<std::size_t>(output)];
+    for (std::size_t n = 0; n < _needed.size(); ++n) {
+      if (!_needed[n] || is_leaf(node(n).operation)) continue;
+      ++uses[static_cast<std::size_t>(first(n))];
+      if (is_binary(node(n).operation)) ++uses[static_cast<std::size_t>(node(n).second)];
+    }
+    _fused.assign(_needed.size(), -1);
+    for (std::size_t n = 0; n < _needed.size(); ++n) {
+      if (!_needed[n]) continue;
+      const Operation operation = node(n).operation;
+      if (operation != Operation::add && operation != Operation::subtract) continue;
+      for (const int product : {node(n).first, node(n).second}) {
+        const auto at = static_cast<std::size_t>(product);
+        if (node(at).operation != Operation::multiply || uses[at] != 1 || _fused[n] >= 0) continue;
+        _fused[n] = product;
+      }
+    }
+  }
+  /// The product that the node takes in, if it is one that moves, as its other operand does.
+  [[nodiscard]] int taken_in(std::size_t n) const {
+    const int product = _fused[n];
+    if (product < 0 || !moves(product)) return -1;
+    return moves(product == node(n).first ? node(n).second : node(n).first) ? product : -1;
   }
 
   void place_leaves(std::size_t outputs) {
@@ -178,8 +207,15 @@ class BlockProgram::Compiler {
     const auto first_output = static_cast<int>(_program._inputs);
     _registers = first_output + static_cast<int>(outputs.size());
     std::vector<int> last(_needed.size(), -1);
+    std::vector<bool> within(_needed.size(), false);  // another node's operation
     for (std::size_t n = 0; n < _needed.size(); ++n) {
       if (!_needed[n] || !_moves[n] || is_leaf(node(n).operation)) continue;
+      if (const int product = taken_in(n); product >= 0) {
+        within[static_cast<std::size_t>(product)] = true;
+        for (const int operand :
+             {node(static_cast<std::size_t>(product)).first, node(static_cast<std::size_t>(product)).second})
+          last[static_cast<std::size_t>(operand)] = static_cast<int>(n);
+      }
       last[static_cast<std::size_t>(first(n))] = static_cast<int>(n);
       if (is_binary(node(n).operation)) last[static_cast<std::size_t>(node(n).second)] = static_cast<int>(n);
     }
@@ -197,7 +233,7 @@ class BlockProgram::Compiler {
         _free.push_back(place(n));
     };
     for (std::size_t n = 0; n < _needed.size(); ++n) {
-      if (!_needed[n] || !_moves[n] || is_leaf(node(n).operation) || _done[n]) continue;
+      if (!_needed[n] || !_moves[n] || is_leaf(node(n).operation) || _done[n] || within[n]) continue;
       const bool pair = node(n).operation == Operation::sine && n + 1 < _needed.size() && _needed[n + 1];
       if (_place[n] < 0) _place[n] = register_for();
       if (pair) {
@@ -205,6 +241,14 @@ class BlockProgram::Compiler {
         if (_place[n + 1] < 0) _place[n + 1] = register_for();
       }
       emit(n, pair);
+      if (const int product = taken_in(n); product >= 0) {
+        const Node& own = node(static_cast<std::size_t>(product));
+        give_back(own.first, n);
+        if (own.second != own.first) give_back(own.second, n);
+        const int other = product == node(n).first ? node(n).second : node(n).first;
+        if (other != own.first && other != own.second) give_back(other, n);
+        continue;
+      }
       give_back(first(n), pair ? n + 1 : n);
       if (is_binary(node(n).operation) && node(n).second != node(n).first) give_back(node(n).second, n);
     }
@@ -232,6 +276,18 @@ class BlockProgram::Compiler {
       _program._code.push_back({Step::sine_and_cosine, _place[n], place(a), _place[n + 1]});
     } else if (!is_binary(node(n).operation)) {
       _program._code.push_back({unary(node(n).operation), _place[n], place(a), 0});
+    } else if (const int product = taken_in(n); product >= 0) {
+      const Node& own = node(static_cast<std::size_t>(product));
+      const bool is_first = product == a;
+      const int other = is_first ? node(n).second : a;
+      const bool both = moves(own.first) && moves(own.second);
+      const int moving = moves(own.first) ? own.first : own.second;
+      const int factor = moving == own.first ? own.second : own.first;
+      Step step = both ? Step::product_plus_vv : Step::product_plus_vs;
+      if (node(n).operation == Operation::subtract)
+        step = is_first ? (both ? Step::product_minus_vv : Step::product_minus_vs)
+                        : (both ? Step::less_product_vv : Step::less_product_vs);
+      _program._code.push_back({step, _place[n], place(moving), place(factor), place(other)});
     } else {
       const int b = node(n).second;
       const Forms forms = binary(node(n).operation);
@@ -253,6 +309,7 @@ class BlockProgram::Compiler {
   std::vector<int> _place;   // of a node: its scalar, or its register
   std::vector<bool> _moves;  // with the state
   std::vector<bool> _done;   // as the second of a pair
+  std::vector<int> _fused;   // of a sum: the product that it alone asks for
   std::vector<int> _free;
   int _registers = 0;
 };

@@ -24,6 +24,12 @@ enum class Step : std::uint8_t {
   divide_vv,
   divide_vs,
   divide_sv,
+  product_plus_vv,   ///< a b + c, rounded once; the next ones too
+  product_plus_vs,   ///< scalar b
+  product_minus_vv,  ///< a b - c
+  product_minus_vs,
+  less_product_vv,  ///< c - a b
+  less_product_vs,
   negate,
   sqrt,
   exp,
@@ -44,11 +50,12 @@ struct Instruction {
   std::int32_t result;  ///< register
   std::int32_t a;
   std::int32_t b;
+  std::int32_t c = 0;
 };
 
 /// Nodes of a graph in double precision at many states: each operation runs over a block of states before the next, in
 /// vectors as wide as the processor has. A state's bits depend neither on the other states nor on its place among them
-/// nor on that width: no products are fused, and elementary functions are its own, after fdlibm and Cephes.
+/// nor on that width: a product that only a sum asks for is rounded with it, and elementary functions are its own, after fdlibm and Cephes.
 class BlockProgram {
  public:
   BlockProgram(const Graph& graph, std::span<const int> outputs);
