@@ -25,6 +25,11 @@ SideOfZero side_of_zero(const BoundedFunction& function, const std::vector<doubl
                         double least) {
   const double direction = end > place ? 1.0 : -1.0;
   SideOfZero told{std::abs(end - place), false};
+  // Rounding may bring the whole distance beyond the end, where nothing is known.
+  const auto position_at = [&](double distance) {
+    const double position = place + direction * distance;
+    return direction > 0.0 ? std::min(position, end) : std::max(position, end);
+  };
   const double error = function(place).error;
   double share = 1.0;  // the error's of the value there
   double untold = 0.0;
@@ -34,12 +39,11 @@ SideOfZero side_of_zero(const BoundedFunction& function, const std::vector<doubl
       distances.push_back(direction * (position - place));
   std::sort(distances.begin(), distances.end());
   int sign = 0;
-  for (std::size_t n = distances.size(); n > 0 && sign == 0; --n)
-    sign = function(place + direction * distances[n - 1]).sign();
+  for (std::size_t n = distances.size(); n > 0 && sign == 0; --n) sign = function(position_at(distances[n - 1])).sign();
   if (sign == 0) return told;
   // Whether the sign is told so far from the place.
   const auto ask = [&](double distance) {
-    const Reading reading = function(place + direction * distance);
+    const Reading reading = function(position_at(distance));
     const bool is_told = reading.sign() == sign;
     if (is_told) {
       told = {distance, true};
