@@ -204,22 +204,32 @@ TEST_P(FamilyJump, AStepOntoTheOtherCurveBesideItsFoldIsTakenBack) {
 INSTANTIATE_TEST_SUITE_P(Fields, FamilyJump, ::testing::Values(5e-13, 3.4e-11, 2.2e-9, 2.7e-8, 1e-6, 1e-5));
 
 // Planes across a chord over the gap meet the one family up to some place, and the other from there on: no index is 2.
+// Whether an orbit is found in all of them that are asked hangs on rounding: of many chords some get there, and none
+// finds a crossing.
 TEST(Jumps, AnIndexThatPassesTwoByAJumpIsNoCrossing) {
   const auto system = std::make_shared<MagneticPendulum>(2.7e-8);
   const Followed loose(system, in_phase_start(), false);
   ASSERT_EQ(loose.passing_two().size(), 1U);
   const std::size_t across = loose.passing_two()[0];
-  continuation::FamilyCurve curve(system, without_reversors(), loose.plain);
-  curve.add(0.0, loose.orbits[across - 3].loop);
-  curve.add(1.0, loose.orbits[across + 2].loop);
   const bifurcation::Event event{bifurcation::Event::Kind::test_function,
                                  {bifurcation::TestFunction::Kind::sector, {1, 0}}};
-  bifurcation::NotLocated why;
-  const auto crossing = bifurcation::locate(*system, curve, event, 0.0, 1.0, why);
-  EXPECT_FALSE(crossing) << "an index of 2 to " << crossing->reading.value << ", bound " << crossing->reading.error;
-  EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_crossing) << to_text(why);
-  EXPECT_GT(why.at_from, 1e-6);
-  EXPECT_NE(to_text(why).find("changes its sign by a jump"), std::string::npos);
+  int jumps = 0;
+  for (const std::size_t before : {3U, 4U})
+    for (int n = 0; n < 10; ++n) {
+      const double end = 1.0 + 0.01 * n;  // another place is asked first
+      continuation::FamilyCurve curve(system, without_reversors(), loose.plain);
+      curve.add(0.0, loose.orbits[across - before].loop);
+      curve.add(end, loose.orbits[across + 2].loop);
+      bifurcation::NotLocated why;
+      const auto crossing = bifurcation::locate(*system, curve, event, 0.0, end, why);
+      EXPECT_FALSE(crossing) << "an index of 2 to " << crossing->reading.value << ", bound " << crossing->reading.error;
+      if (why.reason == bifurcation::NotLocated::Reason::no_orbit) continue;
+      EXPECT_EQ(why.reason, bifurcation::NotLocated::Reason::no_crossing) << to_text(why);
+      EXPECT_GT(why.at_from, 1e-6);
+      EXPECT_NE(to_text(why).find("changes its sign by a jump"), std::string::npos);
+      ++jumps;
+    }
+  EXPECT_GT(jumps, 0);
 }
 
 TEST(Jumps, FamiliesThatCrossArePassedInTheEnd) {
