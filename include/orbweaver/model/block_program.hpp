@@ -55,7 +55,8 @@ struct Instruction {
 
 /// Nodes of a graph in double precision at many states: each operation runs over a block of states before the next, in
 /// vectors as wide as the processor has. A state's bits depend neither on the other states nor on its place among them
-/// nor on that width: a product that only a sum asks for is rounded with it, and elementary functions are its own, after fdlibm and Cephes.
+/// nor on that width: a product that one sum alone asks for is rounded with it, and functions are the kernels' own,
+/// after fdlibm and Cephes.
 class BlockProgram {
  public:
   BlockProgram(const Graph& graph, std::span<const int> outputs);
