@@ -204,6 +204,7 @@ bool has_equations(const Field& field) {
 
 void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system) {
   std::vector<std::string> known = names_of_keys(field.path());
+  known.insert(known.end(), {"model_file", "active"});  // docs/models.md
   if (has_equations(field)) {
     system.model = std::make_shared<const systems::ModelText>(
         systems::read_model(field, {"active", "scales", "model_file", "plugin", "plugin_source", "plugin_abi"}));
