@@ -41,7 +41,6 @@ class Compiled {
   [[nodiscard]] int dimension() const { return static_cast<int>(model.field.size()); }
   /// The input of number 0 of the weights, behind the state.
   [[nodiscard]] int first_weight() const { return dimension(); }
-  /// Whose sum with factors n, n + 1, ... of the inputs are: variations of formulas.
   const Formulas& formulas(const std::vector<double>& values) {
     if (_formulas.field.empty()) make_formulas();
     _formulas.values = values;
