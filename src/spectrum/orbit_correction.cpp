@@ -137,6 +137,8 @@ OrbitCorrection correction_of(const Chain& chain, const FundamentalGroup& group,
     correction.states.col(links[n].begin) = known.triangle.triangularView<Eigen::Upper>().solve(right);
   }
   fill_between<D>(chain, links, correction);
+  // A shift of phase moves a state by f there: little at a slow first state, much where the orbit is fast.
+  correction.states -= chain.fields * (chain.fields.cwiseProduct(correction.states).sum() / chain.fields.squaredNorm());
   return correction;
 }
 

@@ -58,8 +58,6 @@ constexpr double located = 1e-9;
 /// Between two computations of the largest singular value of a kernel, and what of it is rounding.
 constexpr double kernel_factor = 100.0;
 constexpr double kernel_rounding = 1e-8;
-/// A slope that vanishes, relative to those at the orbits beside it.
-constexpr double vanishing_slope = 1e-5;
 
 struct Place {
   continuation::CurvePoint point;
@@ -181,8 +179,8 @@ class CrossingCheck {
     double way = _atlas.has_reversor(static_cast<std::size_t>(_crossing.family)) && !is_placed()
                      ? same_place * (unit + std::abs(arclength))
                      : same_chord * std::abs(b.arclength - a.arclength);
-    // A slope that is one part of those beside it lies as far away.
-    if (both) way = std::max(way, vanishing_slope * std::abs(b.arclength - a.arclength));
+    // By its slope it is found as well as its place is known.
+    if (both) way = std::fmax(way, real("place_error"));
     claims.agree("arclength", arclength, a.arclength + (*found - a.position) / length * (b.arclength - a.arclength),
                  way);
     std::optional<continuation::CurvePoint> point = curve.at(*found, true);
@@ -318,7 +316,7 @@ class CrossingCheck {
     if (archive::has_sector(_kind))
       sector(place, stability, placed, claims);
     else if (archive::is_fold(_kind))
-      fold(place, claims);
+      fold(claims);
     else if (_kind != CrossingKind::unknown)
       function(stability, claims);
   }
@@ -395,14 +393,11 @@ class CrossingCheck {
       claims.agree_within(kernel_factor, "kernel_residual", real("kernel_residual"), kernel.largest(), kernel_rounding);
   }
 
-  void fold(const Place& place, Claims& claims) {
+  void fold(Claims& claims) {
     if (_slopes.size() != 2) return claims.object("kind", "no orbits beside it converge");
-    const double steepest = std::max(std::abs(_slopes[0]), std::abs(_slopes[1]));
     claims.expect(_slopes[0] * _slopes[1] < 0.0, "kind",
                   fmt::format("is {}; the slopes beside it, {:.3g} and {:.3g}, have one sign", _crossing.kind,
                               _slopes[0], _slopes[1]));
-    claims.below("residual", std::abs(slope(place.point)) / steepest, vanishing_slope,
-                 "the slope there, in parts of those beside it,");
   }
 
   void function(const std::optional<spectrum::Stability>& stability, Claims& claims) {
