@@ -26,8 +26,17 @@ struct Link {
   Forcing forcing;
 };
 
+/// Where the orbit is fastest. A shift of phase moves the state there most, and the least solution has none; where the
+/// orbit all but rests it would be told by rounding alone.
+Eigen::Index fastest_state(const Chain& chain) {
+  Eigen::Index fastest = 0;
+  chain.fields.leftCols(chain.segments()).colwise().squaredNorm().maxCoeff(&fastest);
+  return fastest;
+}
+
+/// From state `first` around to it again; no link passes the chain's end.
 template <int D>
-std::vector<Link> links_of(const Chain& chain) {
+std::vector<Link> links_of(const Chain& chain, Eigen::Index first) {
   using Square = Eigen::Matrix<double, D, D>;
   using Pair = Eigen::Matrix<double, D, 2>;
   const Eigen::Index d = chain.dimension();
@@ -36,14 +45,15 @@ std::vector<Link> links_of(const Chain& chain) {
   Square next(d, d);
   Pair forcing;
   Pair own(d, 2);
-  Eigen::Index begin = 0;
-  for (Eigen::Index m = 0; m < chain.segments(); ++m) {
+  Eigen::Index begin = first;
+  for (Eigen::Index n = 0; n < chain.segments(); ++n) {
+    const Eigen::Index m = (first + n) % chain.segments();
     const auto transition = matrix_in<D>(chain.transitions, m, d);
     own.col(0) = chain.defects.col(m);
     own.col(1) = chain.fields.col(m + 1) * chain.steps[m];
     if (m > begin) next.noalias() = transition * product;
-    if (m > begin && next.norm() > joined_segment_norm) {
-      links.push_back({begin, m, product, forcing});
+    if (m < begin || (m > begin && next.norm() > joined_segment_norm)) {
+      links.push_back({begin, m > begin ? m : chain.segments(), product, forcing});
       begin = m;
     }
     if (m == begin) {
@@ -55,7 +65,7 @@ std::vector<Link> links_of(const Chain& chain) {
       forcing = own;
     }
   }
-  links.push_back({begin, chain.segments(), product, forcing});
+  links.push_back({begin, first > 0 ? first : chain.segments(), product, forcing});
   return links;
 }
 
@@ -113,13 +123,22 @@ void fill_between(const Chain& chain, const std::vector<Link>& links, OrbitCorre
 template <int D>
 OrbitCorrection correction_of(const Chain& chain, const FundamentalGroup& group, bool conservative) {
   const Eigen::Index d = chain.dimension();
-  const std::vector<Link> links = links_of<D>(chain);
+  const Eigen::Index first = fastest_state(chain);
+  std::vector<Link> links = links_of<D>(chain, first);
+  const Eigen::MatrixXd back = group.generator.inverse();
+  const auto is_behind = [&](const Link& link) { return link.begin < first; };  // the chain's end
+  for (Link& link : links)
+    if (is_behind(link)) {
+      link.transition = group.generator * link.transition * back;
+      link.forcing = group.generator * link.forcing;
+    }
   Remaining rows{-links.front().transition, Eigen::MatrixXd::Identity(d, d), links.front().forcing};
   std::vector<Eliminated> eliminated;
   for (std::size_t n = 1; n < links.size(); ++n) eliminated.push_back(eliminate(links[n], rows));
 
-  // The last unknown is the change of the period, over `weight`.
-  const double weight = (conservative ? period_weight : 1.0) / (chain.steps.sum() * group.order);
+  // The last unknown is the change of the period, over `weight`: in states as far as the orbit goes in that time.
+  const double period = chain.steps.sum() * group.order;
+  const double weight = (conservative ? period_weight : 1.0) / (period * chain.fields.col(first).norm());
   Eigen::MatrixXd closing(d, d + 1);
   closing << rows.around + rows.last * group.generator, -rows.known.col(1) * weight;
   const Eigen::VectorXd solution = least_solution(closing, rows.known.col(0), conservative ? d - 1 : d);
@@ -127,17 +146,21 @@ OrbitCorrection correction_of(const Chain& chain, const FundamentalGroup& group,
   OrbitCorrection correction;
   correction.stretch = solution[d] * weight;
   correction.states.resize(d, chain.states.cols());
-  correction.states.col(0) = solution.head(d);
-  correction.states.col(chain.segments()) = group.generator * solution.head(d);
+  correction.states.col(first) = solution.head(d);
   const Eigen::Vector2d forced(1.0, correction.stretch);
+  Eigen::VectorXd after = group.generator * solution.head(d);
   for (std::size_t n = links.size(); n-- > 1;) {
     const Eliminated& known = eliminated[n - 1];
-    const Eigen::VectorXd right = known.known * forced - known.around * correction.states.col(0) -
-                                  known.next * correction.states.col(links[n].end);
-    correction.states.col(links[n].begin) = known.triangle.triangularView<Eigen::Upper>().solve(right);
+    const Eigen::VectorXd right = known.known * forced - known.around * solution.head(d) - known.next * after;
+    after = known.triangle.triangularView<Eigen::Upper>().solve(right);
+    if (is_behind(links[n]))
+      correction.states.col(links[n].begin) = back * after;
+    else
+      correction.states.col(links[n].begin) = after;
   }
+  correction.states.col(chain.segments()) = group.generator * correction.states.col(0);
   fill_between<D>(chain, links, correction);
-  // A shift of phase moves a state by f there: little at a slow first state, much where the orbit is fast.
+  // Where it is slower than there a shift is left, which on the whole loop is none.
   correction.states -= chain.fields * (chain.fields.cwiseProduct(correction.states).sum() / chain.fields.squaredNorm());
   return correction;
 }

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "orbweaver/archive/schema/records.hpp"
-#include "orbweaver/loop/symmetry/standard_phase.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/survey/tasks/branch_options.hpp"
 #include "tasks/orbit_row.hpp"
@@ -36,9 +35,7 @@ FollowedBranch::FollowedBranch(const scene::Scene& scene_of_all, std::shared_ptr
 
 std::optional<spectrum::Stability> FollowedBranch::asked_stability(const loop::Loop& loop) const {
   if (!scene.compute.stability) return std::nullopt;
-  // Of the loop that is stored: what a bound says hangs on where the loop begins.
-  return stability_of(*system, loop::in_standard_phase(system->structure(), loop, start.isotropy), start.isotropy,
-                      team);
+  return stability_of(*system, loop, start.isotropy, team);
 }
 
 const std::optional<spectrum::Stability>& FollowedBranch::stability_at(const continuation::Orbit& orbit) {
