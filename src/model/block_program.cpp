@@ -141,6 +141,14 @@ class BlockProgram::Compiler {
     return node(n).operation == Operation::slope ? static_cast<int>(n) - 1 : node(n).first;
   }
 
+  /// Whether a product is one with a power of two: then it is as well rounded by itself.
+  [[nodiscard]] bool is_exact(const Node& product) const {
+    const auto is_power_of_two = [&](int n) {
+      int exponent = 0;
+      return _graph.is_constant(n) && std::abs(std::frexp(_graph.node(n).value, &exponent)) == 0.5;
+    };
+    return is_power_of_two(product.first) || is_power_of_two(product.second);
+  }
   /// Products of two things that move, or of one and a scalar, that one sum or difference alone asks for: which.
   void find_fused(std::span<const int> outputs) {
     std::vector<int> uses(_needed.size(), 0);
@@ -155,11 +163,12 @@ class BlockProgram::Compiler {
       if (!_needed[n]) continue;
       const Operation operation = node(n).operation;
       if (operation != Operation::add && operation != Operation::subtract) continue;
-      for (const int product : {node(n).first, node(n).second}) {
-        const auto at = static_cast<std::size_t>(product);
-        if (node(at).operation != Operation::multiply || uses[at] != 1 || _fused[n] >= 0) continue;
-        _fused[n] = product;
-      }
+      for (const bool exact : {false, true})
+        for (const int product : {node(n).first, node(n).second}) {
+          const auto at = static_cast<std::size_t>(product);
+          const bool is_free = node(at).operation == Operation::multiply && uses[at] == 1 && _fused[n] < 0;
+          if (is_free && is_exact(node(at)) == exact) _fused[n] = product;
+        }
     }
   }
   /// The product that the node takes in, if it is one that moves, as its other operand does.

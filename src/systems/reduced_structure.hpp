@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -36,6 +37,13 @@ struct Chart {
   Eigen::MatrixXd states;                      ///< d x n
   Eigen::VectorXd origin;                      ///< d
   Eigen::MatrixXd rates;                       ///< n x d
+};
+
+/// What a reduced system is of.
+struct Reduction {
+  std::shared_ptr<const System> whole;
+  LinearQuantities linear;
+  Chart chart;
 };
 
 [[nodiscard]] Chart chart_of(const System& whole, const LinearQuantities& linear,

@@ -15,7 +15,7 @@
 #include "orbweaver/systems/model/checks.hpp"
 #include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
-#include "orbweaver/systems/text/graph_system.hpp"
+#include "orbweaver/systems/text/system_of.hpp"
 #include "registry_lines.hpp"
 #include "shipped_texts.hpp"
 

@@ -1,7 +1,7 @@
 #include "fuzz/kinds.hpp"
 #include "orbweaver/document/document.hpp"
 #include "orbweaver/systems/registry.hpp"
-#include "orbweaver/systems/text/graph_system.hpp"
+#include "orbweaver/systems/text/system_of.hpp"
 
 namespace orbweaver::fuzz {
 

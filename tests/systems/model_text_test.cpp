@@ -10,7 +10,7 @@
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/document/document.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "orbweaver/systems/text/graph_system.hpp"
+#include "orbweaver/systems/text/system_of.hpp"
 
 namespace orbweaver::systems::model_text_test {
 namespace {

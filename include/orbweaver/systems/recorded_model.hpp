@@ -7,7 +7,7 @@
 #include "orbweaver/model/recorded.hpp"
 #include "orbweaver/systems/model/bound.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "orbweaver/systems/text/graph_system.hpp"
+#include "orbweaver/systems/text/system_of.hpp"
 
 namespace orbweaver::systems {
 

@@ -1,4 +1,4 @@
-#include "reduced_formulas.hpp"
+#include "reduced_equations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "orbweaver/model/derivatives.hpp"
 #include "orbweaver/model/evaluate.hpp"
 #include "orbweaver/model/recorded.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
@@ -45,63 +46,31 @@ Numbers solved(std::vector<Numbers> left, Numbers right, const std::vector<std::
 }
 
 /// While it is built, and used, all Recorded numbers are in one graph.
-class Reduction {
+class Rewriting {
  public:
-  Reduction(const System& whole, const Formulas& plain, const LinearQuantities& linear, const Chart& chart)
-      : _plain(plain),
+  Rewriting(const GraphSystem& whole, const LinearQuantities& linear, const Chart& chart)
+      : _plain(whole.equations()),
         _linear(linear),
         _chart(chart),
         _n(chart.kept.size()),
         _d(static_cast<std::size_t>(chart.states.rows())) {
-    for (std::size_t p = 0; p < plain.parameters.size(); ++p)
+    for (std::size_t p = 0; p < _plain.parameters.size(); ++p)
       _parameters.push_back(_recording.parameter(static_cast<int>(p)));
-    _inputs.assign(_d * (1 + _d), Recorded(0.0));
+    _inputs.assign(_d, Recorded(0.0));
     Numbers y;
     for (std::size_t c = 0; c < _n; ++c) y.push_back(_recording.input(static_cast<int>(c)));
     const Numbers x = in_frame(y);
     for (std::size_t c = 0; c < _n; ++c) _inputs[chart.kept[c]] = x[c];
-    solve_for_redundant(whole);
-    for (std::size_t column = 0; column < _n; ++column) {
-      Numbers direction;
-      for (std::size_t c = 0; c < _n; ++c)
-        direction.push_back(_recording.input(static_cast<int>(_n + c * _n + column)));
-      const Numbers moved = in_frame(direction);
-      for (std::size_t c = 0; c < _n; ++c) {
-        _inputs[_d + chart.kept[c] * _d + column] = moved[c];
-        for (std::size_t e = 0; e < quantities(); ++e)
-          _inputs[_d + redundant(e) * _d + column] += _follows[c][e] * moved[c];
-      }
-    }
+    solve_for_redundant(whole.structure().conserved);
   }
 
-  [[nodiscard]] Formulas formulas() {
-    Formulas out = _plain;
-    out.dimension = static_cast<int>(_n);
-    const Numbers field = nodes_of(_plain.field);
-    const Numbers variations = nodes_of(_plain.variations);
-    out.field.clear();
-    out.variations.clear();
-    for (const Recorded& rate : rates([&](std::size_t i) { return field[i]; })) out.field.push_back(rate.node());
-    out.variations.resize(_n * _n);
-    for (std::size_t c = 0; c < _n; ++c) {
-      const Numbers column = rates([&](std::size_t i) { return variations[i * _d + c]; });
-      for (std::size_t r = 0; r < _n; ++r) out.variations[r * _n + c] = column[r].node();
-    }
-    out.conserved.clear();
-    out.conserved_gradients.clear();
-    for (const int other : _chart.others) {
-      const auto q = static_cast<std::size_t>(other);
-      out.conserved.push_back(nodes_of({_plain.conserved[q]}).front().node());
-      const Numbers slopes = nodes_of(_plain.conserved_gradients[q]);
-      Numbers by_frame;
-      for (std::size_t c = 0; c < _n; ++c) {
-        Recorded sum = slopes[_chart.kept[c]];
-        for (std::size_t e = 0; e < quantities(); ++e) sum += slopes[redundant(e)] * _follows[c][e];
-        by_frame.push_back(sum);
-      }
-      std::vector<int>& gradient = out.conserved_gradients.emplace_back();
-      for (const Recorded& slope : straightened_gradient(by_frame)) gradient.push_back(slope.node());
-    }
+  [[nodiscard]] Equations equations() {
+    Equations out{{}, _plain.parameters, {}, {}, {}, -1};
+    for (const Recorded& rate : rates(nodes_of(_plain.field))) out.field.push_back(rate.node());
+    for (const int other : _chart.others)
+      out.conserved.push_back(nodes_of({_plain.conserved[static_cast<std::size_t>(other)]}).front().node());
+    for (const Recorded& guard : nodes_of(_plain.guards)) out.guards.push_back(guard.node());
+    if (_plain.action >= 0) out.action = nodes_of({_plain.action}).front().node();
     out.graph = _recording.graph();
     return out;
   }
@@ -115,28 +84,23 @@ class Reduction {
   }
 
   /// With those at 0 the quantities lack what they are to make up for.
-  void solve_for_redundant(const System& whole) {
-    std::vector<Numbers> gradients, square;
+  void solve_for_redundant(const std::vector<std::string>& names) {
+    std::vector<Numbers> square;
     Numbers missing;
     for (const int quantity : _linear.quantities) {
       const auto q = static_cast<std::size_t>(quantity);
-      gradients.push_back(nodes_of(_plain.conserved_gradients[q]));
-      const std::string& name = whole.structure().conserved[q];
-      const auto held = std::find(_plain.parameters.begin(), _plain.parameters.end(), name);
+      std::vector<int> slopes = model::gradient(_plain.graph, _plain.conserved[q], _linear.redundant);
+      for (int& slope : slopes)
+        if (slope < 0) slope = _plain.graph.constant(0.0);
+      square.push_back(nodes_of(slopes));
+      const auto held = std::find(_plain.parameters.begin(), _plain.parameters.end(), names[q]);
       const Recorded value = held == _plain.parameters.end()
                                  ? Recorded(0.0)
                                  : _parameters[static_cast<std::size_t>(held - _plain.parameters.begin())];
       missing.push_back(value - nodes_of({_plain.conserved[q]}).front());
-      Numbers& row = square.emplace_back();
-      for (std::size_t e = 0; e < quantities(); ++e) row.push_back(gradients.back()[redundant(e)]);
     }
-    const std::vector<std::size_t> rows = pivot_rows(rows_of(_chart.gradients, _linear.redundant).transpose());
-    for (std::size_t c = 0; c < _n; ++c) {
-      Numbers right;
-      for (const Numbers& gradient : gradients) right.push_back(-gradient[_chart.kept[c]]);
-      _follows.push_back(solved(square, right, rows));
-    }
-    const Numbers values = solved(square, missing, rows);
+    const Numbers values =
+        solved(square, missing, pivot_rows(rows_of(_chart.gradients, _linear.redundant).transpose()));
     for (std::size_t e = 0; e < quantities(); ++e) _inputs[redundant(e)] = values[e];
   }
 
@@ -157,24 +121,14 @@ class Reduction {
     return x;
   }
 
-  /// S^-T g.
-  [[nodiscard]] Numbers straightened_gradient(Numbers g) const {
-    if (!_chart.straightening) return g;
-    for (std::size_t i = 0; i < _n; ++i)
-      for (std::size_t l = 0; l < i; ++l) g[i] -= unit(l, i) * g[l];
-    for (std::size_t i = 0; i < _n; ++i) g[i] /= root(i);
-    return g;
-  }
-
   /// S (the rates of what is kept less those of the frame).
-  template <class Entry>
-  [[nodiscard]] Numbers rates(const Entry& whole) const {
+  [[nodiscard]] Numbers rates(const Numbers& whole) const {
     Numbers x;
     for (const std::size_t i : _chart.kept) {
-      Recorded sum = whole(i);
+      Recorded sum = whole[i];
       for (std::size_t a = 0; a < _linear.frame.size(); ++a) {
         const double factor = _linear.motions(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a));
-        if (factor != 0.0) sum -= whole(static_cast<std::size_t>(_linear.frame[a])) * factor;
+        if (factor != 0.0) sum -= whole[static_cast<std::size_t>(_linear.frame[a])] * factor;
       }
       x.push_back(sum);
     }
@@ -188,20 +142,18 @@ class Reduction {
     return y;
   }
 
-  const Formulas& _plain;
+  Equations _plain;
   const LinearQuantities& _linear;
   const Chart& _chart;
   std::size_t _n, _d;
   model::Recording _recording;
   Numbers _parameters, _inputs;
-  std::vector<Numbers> _follows;  // d redundant e / d y_c
 };
 
 }  // namespace
 
-Formulas reduced_formulas(const System& whole, const Formulas& plain, const LinearQuantities& linear,
-                          const Chart& chart) {
-  return Reduction(whole, plain, linear, chart).formulas();
+Equations reduced_equations(const GraphSystem& whole, const LinearQuantities& linear, const Chart& chart) {
+  return Rewriting(whole, linear, chart).equations();
 }
 
 }  // namespace orbweaver::systems
