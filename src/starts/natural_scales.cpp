@@ -76,16 +76,19 @@ class Mean {
 /// The Jacobian at one state, in balanced coordinates.
 class LocalScales {
  public:
-  /// Of a driven system the mean over its drive.
-  LocalScales(const systems::System& system, VectorXd point)
-      : _system(system), _point(std::move(point)), _first(systems::mixed_coordinates(system.structure())) {}
+  /// Of a driven system the mean over its drive, and what it is the mean of.
+  LocalScales(const systems::System& system, VectorXd point, const DriveAveraged* driven)
+      : _system(system),
+        _driven(driven),
+        _point(std::move(point)),
+        _first(systems::mixed_coordinates(system.structure())) {}
 
   /// None where the field is not finite.
   [[nodiscard]] std::optional<LogScales> find() {
     const Index d = _point.size();
     std::optional<MatrixXd> jacobian = jacobian_at(_point);
     if (!jacobian) return std::nullopt;
-    if (const auto* driven = dynamic_cast<const DriveAveraged*>(&_system)) jacobian = driven->strength(_point);
+    if (_driven != nullptr) jacobian = _driven->strength(_point);
     if (!jacobian->allFinite()) return std::nullopt;
     _log = VectorXd::Zero(d);
     balance(jacobian->cwiseAbs2(), false);
@@ -252,9 +255,8 @@ class LocalScales {
   /// without a drive, or with one of no strength.
   template <class In>
   [[nodiscard]] double pushed(const In& in) const {
-    const auto* driven = dynamic_cast<const DriveAveraged*>(&_system);
-    if (driven == nullptr) return std::numeric_limits<double>::quiet_NaN();
-    const VectorXd departure = driven->departure(_point);
+    if (_driven == nullptr) return std::numeric_limits<double>::quiet_NaN();
+    const VectorXd departure = _driven->departure(_point);
     double square = 0.0;
     for (Index i = 0; i < departure.size(); ++i)
       if (in(i)) square += std::pow(departure(i) * std::exp2(-_log(i)), 2);
@@ -312,6 +314,7 @@ class LocalScales {
   }
 
   const systems::System& _system;
+  const DriveAveraged* _driven;
   VectorXd _point;
   std::vector<std::size_t> _first;
   VectorXd _log;
@@ -340,13 +343,14 @@ double log_quantity(const systems::System& system, int k, const VectorXd& point,
   return sum / count;
 }
 
-systems::Scales scales_at(const systems::System& system, const std::vector<VectorXd>& states) {
+systems::Scales scales_at(const systems::System& system, const std::vector<VectorXd>& states,
+                          const DriveAveraged* driven) {
   const auto d = static_cast<std::size_t>(system.dimension());
   Mean time;
   // Families grow out of the neighbourhood of their equilibrium: the widest one serves all.
   VectorXd widest = VectorXd::Constant(static_cast<Index>(d), -std::numeric_limits<double>::infinity());
   for (const VectorXd& state : states) {
-    const std::optional<LogScales> local = LocalScales(system, state).find();
+    const std::optional<LogScales> local = LocalScales(system, state, driven).find();
     if (!local) continue;
     time.add(local->time);
     for (Index i = 0; i < widest.size(); ++i)
@@ -393,23 +397,22 @@ std::vector<std::vector<double>> grid_in_scales(std::vector<std::vector<double>>
 systems::Scales natural_scales(const systems::System& system, const std::vector<std::vector<double>>& grid) {
   const auto d = static_cast<std::size_t>(system.dimension());
   core::require(grid.size() <= d, "more grid lists than coordinates");
-  // With the drive's mean in its place, a driven system rests whatever the drive's strength.
-  const std::unique_ptr<const DriveAveraged> mean =
-      system.structure().driven ? std::make_unique<const DriveAveraged>(system) : nullptr;
-  const systems::System& steady = mean ? static_cast<const systems::System&>(*mean) : system;
   // A view of the system, which outlives this call.
-  const std::shared_ptr<const systems::System> view(std::shared_ptr<const systems::System>(), &steady);
+  const std::shared_ptr<const systems::System> view(std::shared_ptr<const systems::System>(), &system);
+  // With the drive's mean in its place, a driven system rests whatever the drive's strength.
+  const auto driven = system.structure().driven ? std::make_unique<const DriveAveraged>(view) : nullptr;
+  const std::shared_ptr<const systems::System> steady = driven ? driven->mean() : view;
   // Newton's method bounds its steps: what it finds must not depend on units either.
-  const systems::Scales rough = scales_at(steady, grid_points(d, grid));
+  const systems::Scales rough = scales_at(*steady, grid_points(d, grid), driven.get());
   std::vector<VectorXd> equilibria;
   for (const std::vector<double>& point :
-       find_fixed_points(*systems::scaled(view, rough), grid_in_scales(grid, rough))) {
+       find_fixed_points(*systems::scaled(steady, rough), grid_in_scales(grid, rough))) {
     VectorXd z(static_cast<Index>(d));
     for (std::size_t i = 0; i < d; ++i) z(static_cast<Index>(i)) = point[i] * rough.coordinate(i);
     equilibria.push_back(std::move(z));
   }
   // A torque that no rest withstands: what its neighbourhood is like, the points of the grid say as well.
-  return mean && equilibria.empty() ? rough : scales_at(steady, equilibria);
+  return driven && equilibria.empty() ? rough : scales_at(*steady, equilibria, driven.get());
 }
 
 }  // namespace orbweaver::starts

@@ -52,8 +52,8 @@ Rows<double>& results() {
 }  // namespace
 
 /// What systems with other values of the parameters share. Of a kind there is one program, or one a number: a quantity,
-/// a guard, a parameter. Derivatives are taken in the units of the parameters and told in scales, so that with powers of
-/// two each number is that of the unscaled system times a power of two, to the last bit.
+/// a guard, a parameter. Derivatives are taken in the units of the parameters and told in scales: with powers of two
+/// each number is that of the unscaled system times a power of two, to the last bit.
 class GraphSystem::Programs {
  public:
   Programs(Equations equations, Scales scales) : _own(std::move(equations)), _scales(std::move(scales)) {}

@@ -12,6 +12,7 @@
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
+#include "support/text_model.hpp"
 
 namespace orbweaver::starts::fixed_points_test {
 namespace {
@@ -127,10 +128,11 @@ TEST(FixedPoints, AGridPointWhereTheFieldIsNotFiniteIsPassedOver) {
 }
 
 TEST(FixedPoints, ThoseNotFiniteAreToldInTheSystemsOwnScales) {
-  const auto scaled = systems::scaled(std::make_shared<test::Oscillator>(0.0, 0.5), {1.0, {2.0, 2.0}, {}, {}});
+  const auto walled = test::text_system("name: walled\nequations: {x': v, v': -x*sqrt(4 - x^2)}\n");
+  const auto scaled = systems::scaled(walled, {1.0, {2.0, 2.0}, {}, {}});
   std::vector<std::vector<double>> not_finite;
-  static_cast<void>(find_fixed_points(*scaled, {{0.5, 0.1}}, &not_finite));
-  EXPECT_EQ(not_finite, (std::vector<std::vector<double>>{{0.5, 0.0}}));
+  static_cast<void>(find_fixed_points(*scaled, {{1.5, 0.1}}, &not_finite));
+  EXPECT_EQ(not_finite, (std::vector<std::vector<double>>{{1.5, 0.0}}));
 }
 
 TEST(FixedPoints, WithoutAGridNoneIsFoundWhereTheFieldIsNotFinite) {

@@ -11,6 +11,7 @@
 #include "orbweaver/systems/registry.hpp"
 #include "spectrum/point_systems.hpp"
 #include "support/magnetic_well.hpp"
+#include "support/text_model.hpp"
 
 namespace orbweaver::starts::natural_scales_test {
 namespace {
@@ -125,33 +126,22 @@ TEST(NaturalScales, OfADrivenSystemWithoutRestAreThoseOfTheGrid) {
 
 /// A rod on a turntable of the rate w, pulled to a line that rests: in the table's frame the torque turns once a half
 /// turn of the drive, and its mean over the drive is none.
-class TurningTorque final : public test::PointSystem {
- public:
-  TurningTorque(double torque, double rate) : PointSystem(driven()), _torque(torque), _rate(rate) {}
-  [[nodiscard]] Eigen::VectorXd field_at(const Eigen::VectorXd& z) const override {
-    return Eigen::Vector3d(z(1), -_torque * std::sin(2.0 * (z(0) - z(2))), _rate);
-  }
-  [[nodiscard]] Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& z) const override {
-    const double pull = 2.0 * _torque * std::cos(2.0 * (z(0) - z(2)));
-    return Eigen::Matrix3d{{0.0, 1.0, 0.0}, {-pull, 0.0, pull}, {0.0, 0.0, 0.0}};
-  }
-
- private:
-  static systems::Structure driven() {
-    systems::Structure structure = test::structure_of(3);
-    structure.driven = true;
-    structure.angles = {0, 2};
-    return structure;
-  }
-  double _torque;
-  double _rate;
-};
+systems::Scales of_turning_torque(double torque, double rate) {
+  const auto table = test::text_system(
+      "name: turntable\n"
+      "equations: {a': r, r': -torque*sin(2*(a - w*t))}\n"
+      "angles: [a]\n"
+      "drive: {frequency: w}\n"
+      "parameters: {torque: 0.5, w: 1}\n",
+      {}, {{"torque", torque}, {"w", rate}});
+  return natural_scales(*table, {{0.0}});
+}
 
 TEST(NaturalScales, OfAPullThatTurnsWithTheDriveAreThoseOfThePull) {
-  const systems::Scales slow = natural_scales(TurningTorque(0.5, 1.0), {{0.0}});
+  const systems::Scales slow = of_turning_torque(0.5, 1.0);
   EXPECT_EQ(slow.time, 1.0);
   EXPECT_THAT(slow.coordinates, ElementsAre(1.0, 1.0, 1.0));
-  const systems::Scales fast = natural_scales(TurningTorque(0.5 * 0x1p20, 0x1p10), {{0.0}});
+  const systems::Scales fast = of_turning_torque(0.5 * 0x1p20, 0x1p10);
   EXPECT_EQ(fast.time, 0x1p-10);
   EXPECT_THAT(fast.coordinates, ElementsAre(1.0, 0x1p10, 1.0));
 }

@@ -8,9 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/document/document.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "orbweaver/systems/text/system_of.hpp"
+#include "support/text_model.hpp"
 
 namespace orbweaver::systems::model_text_test {
 namespace {
@@ -19,21 +18,11 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-ModelText read(const std::string& text) {
-  const document::Source source("model.yaml", {});
-  return read_model(document::Field(source, document::parse_document(text, "model.yaml", true), "", 1));
-}
+const auto read = test::read_model_text;
 
 std::shared_ptr<const System> made(const std::string& text, const std::vector<std::string>& effects = {},
                                    const std::map<std::string, double>& values = {}) {
-  const ModelText model = read(text);
-  Bound bound{{}, effects, {}};
-  const BuiltModel built = build_model(model, values, effects);
-  for (const Parameter& parameter : built.info.parameters) bound.parameters[parameter.name] = parameter.standard;
-  for (const Effect& effect : built.info.effects)
-    for (const Parameter& parameter : effect.parameters) bound.parameters[parameter.name] = parameter.standard;
-  for (const auto& [name, value] : values) bound.parameters[name] = value;
-  return system_of(built, bound);
+  return test::text_system(text, effects, values);
 }
 
 std::string refusal(const std::string& text, const std::vector<std::string>& effects = {}) {
