@@ -1,8 +1,8 @@
 # `cmake --install` and find_package(Orbweaver): a target Orbweaver::<layer> for each layer, with the public headers. Two components:
-# `program`, with the headers, which plugins need, and `development`, all that does not say otherwise.
+# `program`, and `development`, all that does not say otherwise.
 include(CMakePackageConfigHelpers)
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/Orbweaver")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/orbweaver" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT program
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/orbweaver" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/drivers/scenes/" DESTINATION "${CMAKE_INSTALL_DATADIR}/orbweaver/scenes" COMPONENT program
   FILES_MATCHING PATTERN "*.yaml")

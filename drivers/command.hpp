@@ -25,7 +25,6 @@ struct Command {
 // One function a subcommand, each in the file of its name. To add one: write drivers/<name>.cpp, name it here, in the
 // list of drivers/main.cpp and in drivers/CMakeLists.txt. The function adds a subcommand with its options to `program`;
 // option values live in a shared_ptr that `run` captures.
-Command make_build_system_command(CLI::App& program);
 Command make_check_command(CLI::App& program);
 Command make_compare_command(CLI::App& program);
 Command make_completion_command(CLI::App& program);

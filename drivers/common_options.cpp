@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include "orbweaver/core/terminal.hpp"
-#include "orbweaver/systems/plugins.hpp"
 
 namespace orbweaver::drivers {
 
@@ -42,20 +41,6 @@ void add_examples(CLI::App& parser, const std::vector<std::string>& lines) {
   const std::string before = parser.get_footer();
   parser.footer(fmt::format("{}{}:\n  {}", before.empty() ? "" : before + "\n\n",
                             lines.size() == 1 ? "Example" : "Examples", fmt::join(lines, "\n  ")));
-}
-
-void add_plugin_option(CLI::App& parser) {
-  parser
-      .add_option_function<std::vector<std::string>>(
-          "--plugin",
-          [](const std::vector<std::string>& files) {
-            for (const std::string& file : files) static_cast<void>(systems::load_plugin(file));
-          },
-          "The plugin that brings the system, if the scene has one (docs/your_own_system.md)")
-      ->type_name("FILE")
-      ->check(named_path())
-      ->allow_extra_args(false)
-      ->take_all();
 }
 
 }  // namespace orbweaver::drivers

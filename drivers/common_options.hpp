@@ -40,7 +40,5 @@ void add_scene_options(CLI::App& parser, SceneOptions& options);
 void add_log_options(CLI::App& parser, LogOptions& options);
 /// What --help shows behind the options: command lines that do something of use.
 void add_examples(CLI::App& parser, const std::vector<std::string>& lines);
-/// --plugin, for subcommands that read an archive: loads the file while the command line is read.
-void add_plugin_option(CLI::App& parser);
 
 }  // namespace orbweaver::drivers

@@ -52,7 +52,6 @@ Command make_compare_command(CLI::App& program) {
       ->capture_default_str();
   parser->add_flag("--strict-names", options->compare.strict_names, "Families with another name differ");
   parser->add_flag("--json", options->json, "As JSON");
-  add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver compare out/old/atlas.h5 out/new/atlas.h5 --tolerance 1e-8",
                          "orbweaver compare out/old/atlas.h5 out/new/atlas.h5 --strict-names --json"});
   return {parser, [options](const Invocation& invocation) { return compare(*options, invocation); }};

@@ -57,7 +57,6 @@ Command make_consolidate_command(CLI::App& program) {
       "consolidate", "Make the archive of what a survey that was broken off has come to (under mpirun or alone)");
   parser->add_option("directory", options->directory, "The folder of the survey")->required()->check(named_path());
   add_log_options(*parser, options->log);
-  add_plugin_option(*parser);
   add_examples(*parser, {"mpirun -n 2 orbweaver consolidate out/double_pendulum"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }, false, true};
 }

@@ -70,7 +70,6 @@ Command make_export_command(CLI::App& program) {
   parser->add_option("--equations", options->equations, "With --format auto: also the equations file, Fortran 90")
       ->type_name("FILE.f90")
       ->check(named_path());
-  add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver export out/double_pendulum/atlas.h5 --format csv -o orbits.csv",
                          "orbweaver export out/double_pendulum/atlas.h5 --family In-Phase --format json",
                          "orbweaver export out/double_pendulum/atlas.h5 --family In-Phase --format auto -o s.inphase "

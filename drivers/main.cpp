@@ -28,12 +28,11 @@ constexpr int most_ranks = 100000;
 std::vector<Command> add_commands(CLI::App& program) {
   using namespace orbweaver::drivers;
   return {
-      make_build_system_command(program), make_check_command(program),       make_compare_command(program),
-      make_completion_command(program),   make_consolidate_command(program), make_cost_command(program),
-      make_export_command(program),       make_manual_command(program),      make_page_command(program),
-      make_plot_command(program),         make_refine_command(program),      make_show_command(program),
-      make_survey_command(program),       make_sweep_command(program),       make_systems_command(program),
-      make_verify_command(program),
+      make_check_command(program),       make_compare_command(program), make_completion_command(program),
+      make_consolidate_command(program), make_cost_command(program),    make_export_command(program),
+      make_manual_command(program),      make_page_command(program),    make_plot_command(program),
+      make_refine_command(program),      make_show_command(program),    make_survey_command(program),
+      make_sweep_command(program),       make_systems_command(program), make_verify_command(program),
   };
 }
 
@@ -51,6 +50,16 @@ Invocation take_petsc_options(std::vector<std::string>& words) {
   words.erase(mark, words.end());
   return invocation;
 }
+
+/// Known for this version, and refused.
+bool asks_for_plugin(const std::vector<std::string>& words, bool lacks_command) {
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return word == "--plugin" || word.starts_with("--plugin=") || (lacks_command && word == "build-system");
+  });
+}
+constexpr const char* no_plugins =
+    "`--plugin` and `build-system` are no more: a model is text, its equations in `system:` of the scene or in a file "
+    "that `system.model_file` names; `orbweaver systems lorenz --text` shows one (docs/models.md)";
 
 /// A closed stdin, stdout or stderr becomes /dev/null, so that no file of ours gets its number; what is written to a
 /// closed stdout fails all the same, as results are.
@@ -88,6 +97,7 @@ int run(std::vector<std::string> words) {
       return status;
     }
     const bool lacks_command = program.get_subcommands().empty();
+    if (asks_for_plugin(all_words, lacks_command)) throw orbweaver::core::InputError(no_plugins);
     throw orbweaver::core::InputError(
         lacks_command
             ? fmt::format("expected a command, one of {}, got {}; see orbweaver --help",

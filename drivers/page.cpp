@@ -47,7 +47,6 @@ Command make_page_command(CLI::App& program) {
       ->required()
       ->check(named_path())
       ->type_name("FILE.html");
-  add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver page out/double_pendulum/atlas.h5 -o double_pendulum.html"});
   return {parser, [options](const Invocation&) { return run(*options); }};
 }

@@ -65,7 +65,6 @@ Command make_plot_command(CLI::App& program) {
                    "paper: a column, 8.6 cm; wide: both columns, 17.8 cm; slide: 25.4 cm, large letters")
       ->transform(CLI::CheckedTransformer(styles))
       ->type_name("paper|wide|slide");
-  add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver plot out/double_pendulum/atlas.h5 tree -o tree.pdf",
                          "orbweaver plot out/double_pendulum/atlas.h5 orbit --family In-Phase -o orbits.svg",
                          "orbweaver plot out/double_pendulum/atlas.h5 strobe --family In-Phase --step 20 --style slide "

@@ -34,8 +34,7 @@ void require_extensions() {
   }
 }
 
-// Before the initialisers of shared libraries: they find templates of the standard library in the program, whose
-// symbols are there for plugins.
+// Before the initialisers of shared libraries: they may find templates of the standard library in the program.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const first)() = require_extensions;
 
 }  // namespace

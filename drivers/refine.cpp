@@ -119,7 +119,6 @@ Command make_refine_command(CLI::App& program) {
   parser->add_option("--after", options->after, "The first orbit with this value after a step");
   parser->add_option("-n,--digits", options->digits, "Significant digits of every number")->capture_default_str();
   parser->add_option("-o,--output", options->output, "A file for the text too")->check(named_path());
-  add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver refine out/double_pendulum/atlas.h5 In-Phase T=9 -n 50",
                          "orbweaver refine out/double_pendulum/atlas.h5 In-Phase E=-0.76 -o orbit.txt",
                          "orbweaver refine out/double_pendulum/atlas.h5 --crossing 0"});

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "installed_files.hpp"
+#include "build_settings.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/scene/scene.hpp"
 
@@ -13,6 +13,13 @@ namespace orbweaver::drivers {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// In the source tree as long as the program runs from its build folder, else below its prefix.
+fs::path folder_of_scenes() {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  if (program.string().starts_with(build_folder + "/")) return source_scenes;
+  return program.parent_path().parent_path() / installed_scenes;
+}
 
 std::string title_of(const fs::path& file) {
   std::ifstream in(file);
@@ -27,7 +34,7 @@ std::string title_of(const fs::path& file) {
 std::vector<ShippedScene> shipped_scenes() {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(installed_files().scenes, error))
+  for (const auto& entry : fs::directory_iterator(folder_of_scenes(), error))
     if (entry.path().extension() == ".yaml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<ShippedScene> scenes;

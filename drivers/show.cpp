@@ -73,7 +73,6 @@ Command make_show_command(CLI::App& program) {
           "--all", options->selection.all_equilibria,
           "Of equilibria every point of their curves, not only ends, Hopf points, folds and changes of stability")
       ->needs(table);
-  add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver show out/double_pendulum/atlas.h5 families",
                          "orbweaver show out/double_pendulum/atlas.h5 orbits --family In-Phase --columns "
                          "step,period,energy --sort=-period",

@@ -77,11 +77,11 @@ int survey_on(const core::Communicator& comm, const SurveyOptions& options, cons
   if (status == survey::DirectoryStatus::finished || status == survey::DirectoryStatus::finished_with_failures) {
     const bool failed = status == survey::DirectoryStatus::finished_with_failures;
     if (comm.is_root())
-      print_result(
-          fmt::format("{} holds this survey, finished{}: nothing to do\n", options.directory.string(),
-                      failed ? fmt::format(", with failures ({} says which)",
-                                           core::archive_command_line({"show", options.directory.string(), "findings"}))
-                             : ""));
+      print_result(fmt::format("{} holds this survey, finished{}: nothing to do\n", options.directory.string(),
+                               failed
+                                   ? fmt::format(", with failures ({} says which)",
+                                                 core::command_line({"show", options.directory.string(), "findings"}))
+                                   : ""));
     return static_cast<int>(failed ? core::ExitStatus::goal_missed : core::ExitStatus::done);
   }
   const survey::Summary summary =

@@ -78,9 +78,7 @@ int run(const SystemsOptions& options, const Invocation& invocation) {
                     fmt::join(invocation.petsc_options, " ")));
   if (options.text) {
     if (options.name.empty()) throw core::InputError("systems --text: expected one system, `systems NAME --text`");
-    const std::string text = systems::system_text(options.name);
-    if (text.empty()) throw core::InputError(fmt::format("the system {} is a plugin's and has no text", options.name));
-    print_result(text);
+    print_result(systems::system_text(options.name));
     return 0;
   }
   const std::vector<std::string> names =
@@ -106,7 +104,6 @@ Command make_systems_command(CLI::App& program) {
       program.add_subcommand("systems", "Systems, their parameters with units, their effects, and scenes of them");
   parser->add_option("name", options->name, "One system; none: all")->type_name("SYSTEM");
   parser->add_flag("--text", options->text, "The text of one system, to read and to begin one's own with");
-  add_plugin_option(*parser);
   add_examples(*parser, {"orbweaver systems double_pendulum", "orbweaver systems lorenz --text"});
   return {parser, [options](const Invocation& invocation) { return run(*options, invocation); }};
 }

@@ -18,7 +18,6 @@
 #include "orbweaver/report/proof_text.hpp"
 #include "orbweaver/report/verify_text.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
-#include "same_input.hpp"
 
 namespace orbweaver::drivers {
 
@@ -93,7 +92,6 @@ bool check_proofs(const std::filesystem::path& path) {
 
 int verify_on(const core::Communicator& comm, const VerifyOptions& options) {
   agree(comm, [&] { require_options_fit(options); });
-  require_same_input(comm, "");
   bool is_proven = false;
   const bool proves = options.prove || prove::is_proofs_file(options.atlas);
   agree(comm, [&] {  // by rank 0 alone
@@ -138,7 +136,6 @@ Command make_verify_command(CLI::App& program) {
       ->check(named_path());
   parser->add_flag("--margins", options->margins, "Say how near each column came to what is allowed");
   add_log_options(*parser, options->log);
-  add_plugin_option(*parser);
   add_examples(*parser, {"mpirun -n 2 orbweaver verify out/double_pendulum/atlas.h5",
                          "orbweaver verify out/double_pendulum/atlas.h5 --prove In-Phase T=9 -o proofs.h5",
                          "orbweaver verify proofs.h5"});

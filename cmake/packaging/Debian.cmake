@@ -1,5 +1,5 @@
-# Debian packages by CPack (docs/packaging.md): orbweaver, the program with what it needs to compile plugins, and orbweaver-dev, the
-# libraries for find_package(Orbweaver). The preset `package` compiles what they are to hold.
+# Debian packages by CPack (docs/packaging.md): orbweaver, the program, and orbweaver-dev, the libraries and
+# headers for find_package(Orbweaver). The preset `package` compiles what they are to hold.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME orbweaver)
 set(CPACK_PACKAGE_VENDOR "The Orbweaver developers")
@@ -16,12 +16,12 @@ set(CPACK_PRE_BUILD_SCRIPTS "${CMAKE_CURRENT_LIST_DIR}/debian_documents.cmake")
 set(CPACK_ORBWEAVER_SOURCE_DIR "${PROJECT_SOURCE_DIR}")
 set(CPACK_ORBWEAVER_BUILD_DIR "${PROJECT_BINARY_DIR}")
 
-# What the program loads comes from dpkg-shlibdeps; mpirun and gnuplot it starts, the others its plugins are compiled with.
+# What the program loads comes from dpkg-shlibdeps; mpirun and gnuplot it starts.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME orbweaver)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "openmpi-bin")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "g++, gnuplot-nox, libboost-dev, libeigen3-dev, libfmt-dev, libopenblas0-serial")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox, libopenblas0-serial")
 set(processor "any processor of this kind")
 if(ORBWEAVER_NATIVE)
   set(processor "the machine that made the package and its like")
@@ -46,9 +46,8 @@ set(packages libopenmpi-dev petsc-dev slepc-dev libpetsc-real-dev libslepc-real-
 list(JOIN packages ", " packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "orbweaver (= ${PROJECT_VERSION}), ${packages}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake, g++")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The static libraries of Orbweaver, a target Orbweaver::LAYER for each of
-its layers, for programs that find_package(Orbweaver). The headers are in the
-package orbweaver.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The static libraries of Orbweaver and their headers, a target Orbweaver::LAYER
+for each of its layers, for programs that find_package(Orbweaver).")
 include(CPack)
 
 # The section of CHANGELOG.md about this version, as a file of its own.

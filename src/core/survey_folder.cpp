@@ -19,10 +19,8 @@ std::filesystem::path atlas_named(const std::filesystem::path& path) {
     throw InputError(fmt::format(
         "'{}' is the folder of a survey that has not come to its end, and has no atlas.h5 yet. Go on with it by "
         "`orbweaver survey SCENE -o {} --resume`, with the scene and settings that it was begun with, or make an "
-        "archive "
-        "of what it has found by `{}`{}.",
-        path.string(), shell_word(path.string()), archive_command_line({"consolidate", path.string()}),
-        names_plugins_in_commands() ? "" : ", with `--plugin FILE` if its scene has a plugin"));
+        "archive of what it has found by `{}`.",
+        path.string(), shell_word(path.string()), command_line({"consolidate", path.string()})));
   return path;
 }
 

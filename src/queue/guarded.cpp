@@ -12,7 +12,7 @@ std::string current_exception_text() {
   try {
     throw;
   } catch (const std::exception& error) {
-    const std::string text = core::printable_lines(error.what());  // a plugin's may be of any bytes
+    const std::string text = core::printable_lines(error.what());  // of any bytes
     return text.empty() ? "an exception without a message" : text;
   } catch (...) {
     return "an exception that is no std::exception";

@@ -69,7 +69,7 @@ StoredFamily StoredFamily::named(const archive::Archive& atlas, const std::strin
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw core::InputError(fmt::format("{} has no family `{}`; `{}` lists them", atlas.path().string(), name,
-                                       core::archive_command_line({"show", atlas.path().string(), "families"})));
+                                       core::command_line({"show", atlas.path().string(), "families"})));
   return {atlas, static_cast<std::size_t>(found - names.begin())};
 }
 

@@ -13,7 +13,7 @@ std::size_t family_row(const archive::Archive& atlas, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw core::InputError(fmt::format("no family `{}` in {}: `{}` lists them", name, atlas.path().string(),
-                                       core::archive_command_line({"show", atlas.path().string(), "families"})));
+                                       core::command_line({"show", atlas.path().string(), "families"})));
   return static_cast<std::size_t>(found - names.begin());
 }
 

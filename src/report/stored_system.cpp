@@ -75,8 +75,8 @@ std::vector<int> angles_of(const archive::Archive& atlas) {
   std::optional<std::vector<int>> angles = known_angles_of(atlas.header());
   if (!angles)
     throw core::InputError(fmt::format(
-        "{} does not say which coordinates wind (it is of format_minor {}, before 11), and its system {} is "
-        "not known here: give that system's plugin by --plugin",
+        "{} does not say which coordinates wind (it is of format_minor {}, before 11), and the formulas of its "
+        "system {} are missing",
         atlas.path().string(), atlas.format_minor(), atlas.header().system));
   return *std::move(angles);
 }

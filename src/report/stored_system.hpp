@@ -9,8 +9,7 @@
 
 namespace orbweaver::report {
 
-/// What may be asked of the system of an archive; null where this program does not know it (a plugin that is not
-/// loaded).
+/// What may be asked of the system of an archive; null where this program does not know it.
 [[nodiscard]] const systems::ModelInfo* info_of(const archive::Header& header);
 
 /// Whether any orbit has an energy: none has where the system conserves none.

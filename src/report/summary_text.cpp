@@ -83,7 +83,7 @@ void print_counts(std::ostream& out, const survey::Summary& summary) {
 /// What does not add up, and how much the limits cut; failed tasks have lines of their own.
 void print_findings(std::ostream& out, const survey::Summary& summary, Detail detail) {
   if (!summary.archived) return;
-  const std::string show = core::archive_command_line({"show", summary.atlas.string(), "findings"});
+  const std::string show = core::command_line({"show", summary.atlas.string(), "findings"});
   const auto contradictions = texts_of(summary, survey::Severity::contradiction);
   const auto undecided = texts_of(summary, survey::Severity::undecided);
   const std::string counts[] = {fmt::format("{} contradictions", contradictions.size()),
@@ -120,7 +120,7 @@ void print_families(std::ostream& out, const survey::Summary& summary, Detail de
     out << Styled{summary.families[n].failed ? Style::bad : Style::plain, line_of(summary.families[n], width)} << '\n';
   if (listed < summary.families.size())
     out << fmt::format("... and {} more: {}\n", summary.families.size() - listed,
-                       core::archive_command_line({"show", summary.atlas.string(), "families"}));
+                       core::command_line({"show", summary.atlas.string(), "families"}));
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ void print(std::ostream& out, const survey::Summary& summary, Detail detail) {
     out << fmt::format("archive: {}\n", summary.atlas.string());
   else
     out << fmt::format("archive: not written ({} makes it of what there is)\n",
-                       core::archive_command_line({"consolidate", summary.atlas.parent_path().string()}));
+                       core::command_line({"consolidate", summary.atlas.parent_path().string()}));
 }
 
 std::string to_text(const survey::Summary& summary, Detail detail) {

@@ -125,7 +125,6 @@ class Values {
 
   void add_system(const SystemChoice& choice) {
     add("system.name", choice.name);
-    add("system.plugin_source", choice.plugin_source);
     for (const systems::Parameter& parameter : known_parameters(info_of(choice), choice)) {
       const auto given = choice.parameters.find(parameter.name);
       add("system.parameters." + parameter.name, given == choice.parameters.end() ? parameter.standard : given->second);

@@ -9,7 +9,6 @@
 #include "fields.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/input_file.hpp"
-#include "orbweaver/systems/model/plugin_table.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "overrides.hpp"
 #include "sections.hpp"
@@ -117,14 +116,9 @@ Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::st
   }
   YAML::Node root = apply_overrides(document, source.overrides());
   Scene scene = read_scene(Field(source, root, "", 1), folder);
-  const bool is_plain = overrides.empty() && (scene.system.plugin.empty() || root["system"]["plugin_source"]);
-  if (!scene.system.plugin.empty()) {
-    root["system"]["plugin_source"] = scene.system.plugin_source;
-    root["system"]["plugin_abi"] = systems::plugin_abi;
-  }
   const bool has_file = hold_model(folder, root);
   const bool has_hashes = keep_hashes(scene, root) && !has_file;
-  scene.text = is_plain && has_hashes ? text : emit(root);
+  scene.text = overrides.empty() && has_hashes ? text : emit(root);
   require_scene_size(scene.text.size(), place);
   return scene;
 }
@@ -137,6 +131,16 @@ Scene parse(const std::string& text, const std::string& origin, const std::vecto
 
 Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return parse_in(file.parent_path(), read_file(file), file.string(), overrides);
+}
+
+std::string written_value(const std::string& text, const std::string& key) {
+  YAML::Node node = parse_document(text, "scene", true);
+  for (std::size_t from = 0; from != std::string::npos && node && node.IsMap();) {
+    const std::size_t dot = key.find('.', from);
+    node.reset(node[key.substr(from, dot - from)]);
+    from = dot == std::string::npos ? dot : dot + 1;
+  }
+  return node && node.IsScalar() ? node.Scalar() : "";
 }
 
 }  // namespace orbweaver::scene

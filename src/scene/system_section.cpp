@@ -7,8 +7,6 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/input_file.hpp"
-#include "orbweaver/systems/model/plugin_table.hpp"
-#include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 
@@ -143,38 +141,6 @@ std::vector<std::string> scale_names(const systems::System& system) {
 
 namespace {
 
-/// The plugin of a scene that is a file: it lies beside it. That of a stored scene has been loaded, or is the one that
-/// was given on the command line.
-const systems::Plugin& plugin_of(const Field& file, const Field* source,
-                                 const std::optional<std::filesystem::path>& folder) {
-  const std::string wanted = source != nullptr ? source->text("the hash that the archive's scene has") : "";
-  const systems::Plugin* found = nullptr;
-  if (folder) {
-    const std::string name = file.text("./my_system.so", longest_path);
-    try {
-      found = &systems::load_plugin(*folder / name);
-    } catch (const core::InputError& error) {
-      file.fail(error.what());
-    }
-  } else {
-    found = systems::find_plugin(wanted);
-    const std::vector<const systems::Plugin*> loaded = systems::loaded_plugins();
-    if (found == nullptr && !loaded.empty()) found = loaded.back();
-  }
-  if (found == nullptr)
-    file.fail("the plugin that brings the system", "none, for a stored scene does not hold it",
-              "give it by `--plugin FILE`, the file that `orbweaver build-system` made");
-  if (!wanted.empty() && found->source != wanted)
-    source->fail(fmt::format("a plugin of this source, {}", wanted),
-                 fmt::format("'{}' of source {}", found->file.string(), found->source),
-                 "give the plugin that was built from that source");
-  return *found;
-}
-
-}  // namespace
-
-namespace {
-
 /// The model of a file beside the scene, or of a stored scene, which holds it.
 std::shared_ptr<const systems::ModelText> model_of_file(const Field& file, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / file.text("my_model.yaml", longest_path);
@@ -200,41 +166,38 @@ bool has_equations(const Field& field) {
   return false;
 }
 
+/// Known for this version: until the one before systems came from shared libraries too, of which archives hold no
+/// formulas.
+void refuse_plugin(const Field& field, bool is_stored) {
+  if (!field.is_map()) return;
+  for (const Field::Entry& entry : field.entries("system: {name: double_pendulum}"))
+    if (const std::string key = entry.key.key(); key == "plugin" || key == "plugin_source" || key == "plugin_abi")
+      entry.value.fail(is_stored ? "the system's formulas" : "equations, or a file that has them as `model_file`",
+                       is_stored ? "none, for it was made with a plugin" : entry.value.got() + ", of a plugin",
+                       is_stored ? "survey the system again with equations in `system:` (docs/models.md)"
+                                 : "write them here; `orbweaver systems lorenz --text` shows some (docs/models.md)");
+}
+
 }  // namespace
 
 void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system) {
+  refuse_plugin(field, !folder);
   std::vector<std::string> known = names_of_keys(field.path());
   known.insert(known.end(), {"model_file", "active"});  // docs/models.md
   if (has_equations(field)) {
-    system.model = std::make_shared<const systems::ModelText>(
-        systems::read_model(field, {"active", "scales", "model_file", "plugin", "plugin_source", "plugin_abi"}));
+    system.model =
+        std::make_shared<const systems::ModelText>(systems::read_model(field, {"active", "scales", "model_file"}));
     known.insert(known.end(), systems::model_keys().begin(), systems::model_keys().end());
   }
   const Keys keys(field, known, "system: {name: double_pendulum}");
   const auto name = keys.find("name");
-  const auto plugin = keys.find("plugin");
-  const auto source = keys.find("plugin_source");
   const auto file = keys.find("model_file");
-  if (system.model && (plugin || file)) field.fail("equations, or a file that has them", "both", "remove one");
+  if (system.model && file) field.fail("equations, or a file that has them", "both", "remove one");
   if (file && folder) system.model = model_of_file(*file, *folder);
-  if (!name && !plugin && !system.model)
+  if (!name && !system.model)
     field.fail("the system's `name`, or its `equations`", "a map without them",
                "add for example `name: double_pendulum`");
-  if (const auto abi = keys.find("plugin_abi")) {
-    const int version = abi->integer({.lower = 1, .example = "1"});
-    if (version != systems::plugin_abi)
-      abi->fail(fmt::format("{}, this program's ABI version for plugins", systems::plugin_abi), abi->got(),
-                "use the version of Orbweaver that wrote it");
-  }
-  if (source && !plugin) source->fail("a `plugin` beside it", "none", "remove it");
-  if (plugin) {
-    const systems::Plugin& found = plugin_of(*plugin, source ? &*source : nullptr, folder);
-    system.plugin = plugin->text("./my_system.so", longest_path);
-    system.plugin_source = found.source;
-    system.name = name ? name->choice(found.models) : found.models.front();
-  } else {
-    system.name = system.model ? system.model->name : name->choice(systems::system_names());
-  }
+  system.name = system.model ? system.model->name : name->choice(systems::system_names());
   const bool is_inline = system.model && !file;
   if (file && name && system.model && name->text("my_model") != system.model->name)
     name->fail(fmt::format("the model's name, `{}`", system.model->name), name->got(), "leave it out");

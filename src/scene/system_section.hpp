@@ -11,8 +11,8 @@
 
 namespace orbweaver::scene {
 
-/// Fills `system`, effects before parameters; throws core::InputError as Field does. `folder`: of the scene's file, in
-/// which a plugin lies; none for a stored scene, whose plugin is loaded already.
+/// Fills `system`, effects before parameters; throws core::InputError as Field does. `folder`: of the scene's file;
+/// none for a stored scene.
 void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system);
 
 /// Fails at `field`, with what the layer `systems` says, where it refuses to bind the system as chosen.

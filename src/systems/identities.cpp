@@ -12,7 +12,6 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/numerics/random.hpp"
-#include "orbweaver/systems/plugins.hpp"
 
 namespace orbweaver::systems {
 
@@ -189,8 +188,8 @@ std::string state_text(const System& system, const std::vector<double>& state) {
 
 [[noreturn]] void refuse(const System& system, const std::string& what, const std::vector<double>& state) {
   throw core::InputError(
-      fmt::format("the model of system {} contradicts its structure: {}, at {}; mend the model before it is surveyed",
-                  name_with_plugin(system.info().name), what, state_text(system, state)));
+      fmt::format("the model of system '{}' contradicts its structure: {}, at {}; mend the model before it is surveyed",
+                  system.info().name, what, state_text(system, state)));
 }
 
 /// All that follows orbits counts on derivatives: what is none there is no fault of an identity.

@@ -10,13 +10,10 @@
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/core/text.hpp"
 #include "orbweaver/document/document.hpp"
 #include "orbweaver/systems/model/checks.hpp"
-#include "orbweaver/systems/plugins.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "orbweaver/systems/text/system_of.hpp"
-#include "registry_lines.hpp"
 #include "shipped_texts.hpp"
 
 namespace orbweaver::systems {
@@ -55,36 +52,15 @@ const TextSystem* find_text(const std::string& name) {
   return nullptr;
 }
 
-/// Of plugins.
-std::vector<RegistryLine>& registry() {
-  static std::vector<RegistryLine> lines;
-  return lines;
-}
+struct RecordedSystem {
+  ModelInfo info;
+  SystemMaker make;
+};
 
-const RegistryLine* find_line(const std::string& name) {
-  const auto found = std::find_if(registry().begin(), registry().end(),
-                                  [&](const RegistryLine& candidate) { return candidate.info().name == name; });
-  return found == registry().end() ? nullptr : &*found;
-}
-
-void require_new(const RegistryLine& line) {
-  const ModelInfo& info = line.info();
-  require_description(info);
-  if (find_line(info.name) != nullptr || shipped_systems().contains(info.name))
-    throw core::InputError(
-        fmt::format("it brings a system '{}', and there is another one of that name: rename it", info.name));
-}
-
-/// A plugin's model that contradicts itself is wrong input, not a fault of the program.
-std::shared_ptr<const System> made(const RegistryLine& line, const Bound& bound) {
-  const std::string& name = line.info().name;
-  try {
-    return line.make(bound);
-  } catch (const core::Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw core::InputError(fmt::format("the plugin's system {}: {}", name_with_plugin(name), error.what()));
-  }
+/// Of a program that links the library, by name.
+std::map<std::string, RecordedSystem>& recorded_systems() {
+  static std::map<std::string, RecordedSystem> systems;
+  return systems;
 }
 
 void require_sizes(const TextSystem& system, const Bound& bound) {
@@ -103,7 +79,8 @@ void require_sizes(const TextSystem& system, const Bound& bound) {
 }
 
 std::shared_ptr<const System> made(const std::string& name, const Bound& bound) {
-  if (const RegistryLine* line = find_line(name)) return made(*line, bound);
+  if (const auto found = recorded_systems().find(name); found != recorded_systems().end())
+    return found->second.make(bound);
   const TextSystem& system = *find_text(name);
   require_sizes(system, bound);
   return system_of(build_model(*system.text, bound.parameters, bound.effects), bound);
@@ -134,80 +111,29 @@ HeldTotals held_totals(const System& system, std::map<std::string, double> given
 
 }  // namespace
 
-void require_description(const ModelInfo& info) {
-  constexpr std::size_t longest = 200;
-  constexpr std::size_t most_bytes =
-      60'000;  // of the 65,535 of an attribute in HDF5's header, the rest for its description
-  const auto require = [&](const char* what, const std::string& text, bool may_be_empty = false) {
-    if (text.size() > longest || core::printable(text) != text || (text.empty() && !may_be_empty))
-      throw core::InputError(fmt::format("its {} `{}`: expected one line of text with 1 to {} characters", what,
-                                         core::shortened(core::printable(text), longest), longest));
-  };
-  const auto require_apart = [&](const char* what, const std::vector<std::string>& names) {
-    std::size_t width = sizeof(double);
-    for (const std::string& name : names) width = std::max(width, name.size());
-    if (names.size() * width > most_bytes)
-      throw core::InputError(fmt::format("its {} {} are more than an archive's head holds: expected at most {}",
-                                         names.size(), what, most_bytes / width));
-    std::set<std::string> known;
-    for (const std::string& name : names)
-      if (!known.insert(name).second)
-        throw core::InputError(fmt::format("two of its {} are named `{}`: expected a name for each", what, name));
-  };
-  const auto require_parameters = [&](const std::vector<Parameter>& parameters) {
-    for (const Parameter& parameter : parameters) {
-      require("name of a parameter", parameter.name);
-      if (!std::isfinite(parameter.standard))
-        throw core::InputError(fmt::format("its parameter `{}` has the standard value {}: expected a finite number",
-                                           parameter.name, parameter.standard));
-      require("unit of a parameter", parameter.unit, true);
-      require("meaning of a parameter", parameter.meaning, true);
-    }
-  };
-  require("name", info.name);
-  require("title", info.title, true);
-  require("meaning", info.meaning, true);
-  for (const std::string& name : info.state_names) require("name of a coordinate", name);
-  for (const std::string& name : info.winding_names) require("name of a winding number", name, true);
-  require_apart("coordinates", info.state_names);
-  require_parameters(info.parameters);
-  std::vector<std::string> parameters;
-  for (const Parameter& parameter : info.parameters) parameters.push_back(parameter.name);
-  require_apart("parameters", parameters);
-  for (const Effect& effect : info.effects) {
-    require("name of an effect", effect.name);
-    require_parameters(effect.parameters);
-  }
-}
-
-void add_registry_lines(std::span<const RegistryLine> lines) {
-  const std::size_t before = registry().size();
-  try {
-    for (const RegistryLine& line : lines) {
-      require_new(line);
-      registry().push_back(line);
-    }
-  } catch (...) {
-    registry().resize(before);
-    throw;
-  }
+void add_recorded(ModelInfo info, SystemMaker make) {
+  require_description(info);
+  const std::string name = info.name;
+  if (shipped_systems().contains(name))
+    throw core::InputError(fmt::format("there is a system of the program named '{}': rename this one", name));
+  recorded_systems().insert_or_assign(name, RecordedSystem{std::move(info), make});
 }
 
 std::vector<std::string> system_names() {
   std::vector<std::string> names;
   for (const auto& [name, system] : shipped_systems()) names.push_back(name);
-  for (const RegistryLine& candidate : registry()) names.push_back(candidate.info().name);
+  for (const auto& [name, system] : recorded_systems()) names.push_back(name);
   return names;
 }
 
 const ModelInfo& model_info(const std::string& name) {
-  if (const RegistryLine* line = find_line(name)) return line->info();
+  if (const auto found = recorded_systems().find(name); found != recorded_systems().end()) return found->second.info;
   if (const TextSystem* system = find_text(name)) return system->info;
   throw core::InputError(fmt::format("there is no system '{}'; the systems are: {}", name, joined(system_names())));
 }
 
 void add_model(const std::shared_ptr<const ModelText>& text) {
-  if (shipped_systems().contains(text->name) || find_line(text->name) != nullptr)
+  if (shipped_systems().contains(text->name) || recorded_systems().contains(text->name))
     throw core::InputError(
         fmt::format("{}: expected a name of its own, got `{}`, which is another system's; give it "
                     "another `name`",

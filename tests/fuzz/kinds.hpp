@@ -28,7 +28,7 @@ Kind messages();      ///< of the queue, half of them with a right checksum
 
 Kind models();        ///< the texts of the shipped systems, changed
 Kind loops();         ///< in CSV, as starts
-Kind descriptions();  ///< names and meanings that a plugin's systems bring
+Kind descriptions();  ///< names and meanings that models bring
 
 /// Files are written into `folder`, which exists and is empty.
 Kind archives(const std::filesystem::path& folder);
@@ -37,7 +37,6 @@ Kind checkpoints(const std::filesystem::path& folder);  ///< half of them with a
 Kind journals(const std::filesystem::path& folder);     ///< the same
 Kind payloads(const std::filesystem::path& folder);     ///< that tasks in both say where they lie
 
-Kind plugins(const std::filesystem::path& folder);         ///< what is looked at before one is loaded
 Kind proofs(const std::filesystem::path& folder);          ///< files of `verify --prove`
 Kind start_archives(const std::filesystem::path& folder);  ///< whose orbits a scene starts from
 

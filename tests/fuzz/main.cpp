@@ -79,7 +79,6 @@ fuzz::Kind kind_of(const std::string& name) {
       {"messages", fuzz::messages},
       {"loops", fuzz::loops},
       {"descriptions", fuzz::descriptions},
-      {"plugins", [&] { return fuzz::plugins(folder()); }},
       {"proofs", [&] { return fuzz::proofs(folder()); }},
       {"start_archives", [&] { return fuzz::start_archives(folder()); }},
       {"archives", [&] { return fuzz::archives(folder()); }},

@@ -57,6 +57,8 @@ const std::vector<std::string> formula_words{"(",
                                              "no"};
 const std::vector<std::string> formula_numbers{"0", "1", "-1", "2", "0.5", "1e300", "x", "(x)", "y'", "links", "9999"};
 
+const std::vector<std::string> name_words{"\x1b[31m", "\xff", "\xc2\x9b", "é", std::string(1, '\0'), "\t", "x", "<>"};
+
 }  // namespace
 
 Kind models() {
@@ -88,6 +90,33 @@ Kind models() {
               std::vector<double> f(z.size());
               system->field(1, z.data(), f.data());
             }
+          }};
+}
+
+Kind descriptions() {
+  return {[](Mutator& mutator) {
+            std::string text = "my_system\nMy system\nwhat moves\nq\np\nk\n1/s\nstiffness";
+            return mutator.below(3) == 0 ? text : mutator.changed(text, name_words);
+          },
+          [](const std::string& text) {
+            std::vector<std::string> words{""};
+            for (const char c : text)
+              if (c == '\n')
+                words.emplace_back();
+              else
+                words.back() += c;
+            words.resize(8);
+            systems::ModelInfo info;
+            info.name = words[0];
+            info.title = words[1];
+            info.meaning = words[2];
+            info.state_names = {words[3], words[4]};
+            info.winding_names = {words[3], ""};
+            info.parameters = {{words[5], 1.0, 0.0, 2.0, false, words[6], words[7]}};
+            info.effects = {{words[5], words[2], info.parameters}};
+            systems::require_description(info);
+            for (const std::string& word : words)
+              if (core::printable(word) != word) throw WrongReading{"a description that cannot be shown"};
           }};
 }
 

@@ -43,7 +43,6 @@ cp /etc/resolv.conf "$root/etc/resolv.conf"
 printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" && chmod +x "$root/usr/sbin/policy-rc.d"
 mkdir "$root/packages" && cp "$program" "$development" "$root/packages/"
 cp -r "$source/tests/package" "$root/packages/tests"
-cp -r "$source/tests/documents" "$root/packages/documents" # own_system.sh reads commands with it
 # What is mounted here is gone when the command ends.
 unshare --mount --pid --fork sh -c "mount -t proc proc '$root/proc' && mount --rbind /dev '$root/dev' && mount -t tmpfs none '$root/dev/shm' &&
   exec chroot '$root' env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 OMPI_MCA_rmaps_base_oversubscribe=1 \

@@ -14,9 +14,9 @@
 #include "archive/sample.hpp"
 #include "orbweaver/core/petsc/session.hpp"
 #include "orbweaver/report/page/page.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "page/page_template.hpp"
-#include "registry_lines.hpp"
 #include "support/lattice.hpp"
 
 namespace {
@@ -76,8 +76,7 @@ archive::Records unknown_records() {
 
 /// Three particles without their centre of mass: the coordinates are those that the reduction leaves.
 archive::Header reduced_header() {
-  const std::array lines{systems::registry_line<test::Lattice>};
-  systems::add_registry_lines(lines);
+  systems::add_recorded<test::Lattice>();
   const auto system = systems::make_system("lattice", {{"closing", 0.0}}, {});
   archive::Header header;
   header.orbweaver_version = "0.1.0";

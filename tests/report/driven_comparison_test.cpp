@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/report/compare/comparison.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/driven_oscillator.hpp"
 #include "survey/atlas.hpp"
 
@@ -17,11 +17,7 @@ namespace {
 using namespace orbweaver;
 
 std::filesystem::path surveyed(const std::string& damping, const std::string& setting) {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<test::DrivenOscillator>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<test::DrivenOscillator>();
   std::vector<std::string> settings{
       "system={name: driven_oscillator, parameters: {w: 1.056, a1: -1, a3: 1, a2: 0.253, d: " + damping + "}}",
       "starts={fixed_points: {grid: [[-1, 1], [0], [0]]}}",

@@ -53,7 +53,7 @@ std::filesystem::path driven(const std::string& system) {
 }
 
 TEST(WindingReaders, TurnThePhaseOfASystemThatIsNotKnown) {
-  const archive::Archive atlas(driven("nobodys_plugin"));
+  const archive::Archive atlas(driven("nobodys_system"));
   EXPECT_THAT(
       loop::state_at(archive::loop_of(atlas, 0), M_PI),
       ElementsAre(testing::DoubleNear(-1.0, 1e-14), testing::DoubleNear(0.0, 1e-14), testing::DoubleNear(M_PI, 1e-14)));
@@ -66,7 +66,7 @@ TEST(WindingReaders, KnowThoseOfOlderArchivesByTheirSystem) {
   const std::filesystem::path known = driven("duffing");
   test::remove_checksums(known);  // which makes it one of format_minor 1
   EXPECT_THAT(report::angles_of(archive::Archive(known)), ElementsAre(2));
-  const std::filesystem::path unknown = driven("nobodys_plugin");
+  const std::filesystem::path unknown = driven("nobodys_system");
   test::remove_checksums(unknown);
   const archive::Archive atlas(unknown);
   EXPECT_EQ(report::known_angles_of(atlas.header()), std::nullopt);
@@ -76,7 +76,7 @@ TEST(WindingReaders, KnowThoseOfOlderArchivesByTheirSystem) {
     FAIL() << "which coordinate winds is not known";
   } catch (const core::InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("does not say which coordinates wind"));
-    EXPECT_THAT(error.what(), HasSubstr("give that system's plugin by --plugin"));
+    EXPECT_THAT(error.what(), HasSubstr("the formulas of its system nobodys_system are missing"));
   }
 }
 

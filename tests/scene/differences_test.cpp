@@ -40,9 +40,6 @@ const std::map<std::string, Case> cases{
     {"system.parameters.l2", {"1", "0.5"}},
     {"system.parameters.g", {"1", "9.81"}},
     {"system.effects", {"[]", ""}},  // brings parameters: tested below
-    {"system.plugin", {"", ""}},     // tests/package/own_system.sh
-    {"system.plugin_abi", {"", ""}},
-    {"system.plugin_source", {"", ""}},
     {"system.scales.time", {"auto", "2"}},
     {"system.scales.th1", {"auto", ""}},  // 1, as of every angle
     {"system.scales.th2", {"auto", ""}},

@@ -41,8 +41,8 @@ refused "/dev/zero: expected a scene file that can be read, got a device" check 
 mkfifo archive.h5
 refused "archive.h5' is a pipe; an Orbweaver atlas was expected. Give" show archive.h5
 refused "/dev/zero' is a device" show /dev/zero
-refused "the plugin 'pipe': it is a pipe" systems --plugin pipe
-refused "'pipe': expected a source that can be read, got a pipe" build-system pipe -o out.so
+printf 'system: {model_file: pipe}\nstarts: {}\n' > model.yaml
+refused "model.yaml:1: system.model_file: expected the file of a model, told from the scene's folder, got a pipe" check model.yaml
 ln -s circle circle
 ln -s nowhere broken
 mkdir survey && ln -s atlas.h5 survey/atlas.h5

@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "support/lorenz_equations.hpp"
 #include "support/van_der_pol.hpp"
@@ -107,7 +107,7 @@ TEST(EquilibriumCurve, KnowsABranchPointAtWhichTwoEigenvaluesPassZero) {
     systems::Bound bound = systems::bound_to(TwoPitchforks::info(), {{"m", start}}, {});
     bound.scalars.free = {"m"};
     const EquilibriumCurve curve =
-        follow_equilibrium(*systems::Registered<TwoPitchforks>::make(bound), std::vector<double>(2, 0.0),
+        follow_equilibrium(*systems::recorded<TwoPitchforks>(bound), std::vector<double>(2, 0.0),
                            {.parameter_from = -1.0, .parameter_to = 1.0});
     const std::vector<EquilibriumPoint> found = branch_points(curve);
     ASSERT_EQ(found.size(), 1U) << start;
@@ -187,8 +187,8 @@ EquilibriumCurve of_pitchforks(double start, std::array<double, 3> zeros, double
       Pitchforks<Rates>::info(),
       {{"m", start}, {"a", zeros[0]}, {"b", zeros[1]}, {"c", zeros[2]}, {"o", offset}, {"u", unit}}, {});
   bound.scalars.free = {"m"};
-  return follow_equilibrium(*systems::Registered<Pitchforks<Rates>>::make(bound),
-                            std::vector<double>(Rates::count, offset), {.parameter_from = -1.0, .parameter_to = 1.0});
+  return follow_equilibrium(*systems::recorded<Pitchforks<Rates>>(bound), std::vector<double>(Rates::count, offset),
+                            {.parameter_from = -1.0, .parameter_to = 1.0});
 }
 
 std::vector<double> branching_parameters(const EquilibriumCurve& curve) {
@@ -268,7 +268,7 @@ TEST(EquilibriumCurve, BranchPointsInManyDimensionsAreFound) {
     systems::Bound bound = systems::bound_to(Lattice::info(), {{"m", start}}, {});
     bound.scalars.free = {"m"};
     const EquilibriumCurve curve =
-        follow_equilibrium(*systems::Registered<Lattice>::make(bound), std::vector<double>(Lattice::dimension, 0.0),
+        follow_equilibrium(*systems::recorded<Lattice>(bound), std::vector<double>(Lattice::dimension, 0.0),
                            {.parameter_from = -0.5, .parameter_to = 0.7});
     const std::vector<double> found = branching_parameters(curve);
     ASSERT_EQ(found.size(), 16U);
@@ -307,8 +307,8 @@ TEST(EquilibriumCurve, AFoldBetweenBranchPointsWithinOneStepIsFoundWithThem) {
     systems::Bound bound = systems::bound_to(FoldBetweenPitchforks::info(), {{"m", start}}, {});
     bound.scalars.free = {"m"};
     const EquilibriumCurve curve =
-        follow_equilibrium(*systems::Registered<FoldBetweenPitchforks>::make(bound),
-                           std::vector<double>{std::sqrt(start), 0.0}, {.parameter_from = -1.0, .parameter_to = 1.0});
+        follow_equilibrium(*systems::recorded<FoldBetweenPitchforks>(bound), std::vector<double>{std::sqrt(start), 0.0},
+                           {.parameter_from = -1.0, .parameter_to = 1.0});
     ASSERT_EQ(curve.folds.size(), 1U);
     EXPECT_NEAR(curve.folds[0].state[0], 0.0, 1e-7);
     EXPECT_THAT(branching_parameters(curve), ::testing::UnorderedElementsAre(::testing::DoubleNear(0.0009, 1e-9),
@@ -362,7 +362,7 @@ TEST(EquilibriumCurve, TwoHopfPointsWithinOneStepAreFound) {
       systems::Bound bound = systems::bound_to(TwoOscillators::info(),
                                                {{"m", start}, {"m1", m1}, {"m2", m2}, {"w1", 1.0}, {"w2", 1.7}}, {});
       bound.scalars.free = {"m"};
-      const auto system = systems::Registered<TwoOscillators>::make(bound);
+      const auto system = systems::recorded<TwoOscillators>(bound);
       const EquilibriumCurve curve =
           follow_equilibrium(*system, std::vector<double>(4, 0.0), {.parameter_from = -1.0, .parameter_to = 1.0});
       ASSERT_EQ(curve.hopf.size(), 2U);
@@ -405,7 +405,7 @@ TEST(EquilibriumCurve, HasAHopfPointBesideAFastDecay) {
     systems::Bound bound = systems::bound_to(BesideAFastDecay::info(), {{"m", start}}, {});
     bound.scalars.free = {"m"};
     const EquilibriumCurve curve =
-        follow_equilibrium(*systems::Registered<BesideAFastDecay>::make(bound), std::vector<double>(3, 0.0),
+        follow_equilibrium(*systems::recorded<BesideAFastDecay>(bound), std::vector<double>(3, 0.0),
                            {.parameter_from = -1.0, .parameter_to = 1.0});
     ASSERT_EQ(curve.hopf.size(), 1U) << start;
     EXPECT_NEAR(curve.hopf[0].at.parameter, 0.0, 1e-9);
@@ -440,7 +440,7 @@ class LotkaVolterra {
 TEST(EquilibriumCurve, OfCentresHasNoHopfPoint) {
   systems::Bound bound = systems::bound_to(LotkaVolterra::info(), {}, {});
   bound.scalars.free = {"a"};
-  const auto system = systems::Registered<LotkaVolterra>::make(bound);
+  const auto system = systems::recorded<LotkaVolterra>(bound);
   const EquilibriumCurve curve =
       follow_equilibrium(*system, std::vector<double>{1.0, 1.0}, {.parameter_from = 0.5, .parameter_to = 2.0});
   EXPECT_THAT(curve.hopf, ::testing::IsEmpty());

@@ -11,7 +11,7 @@
 #include "orbweaver/starts/equilibrium_curve.hpp"
 #include "orbweaver/starts/natural_scales.hpp"
 #include "orbweaver/systems/linear_totals.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "orbweaver/systems/scaled_system.hpp"
 #include "support/described.hpp"
@@ -57,7 +57,7 @@ class Network {
 TEST(HopfOfNetworks, ASlowOneBesideAFastDecay) {
   systems::Bound bound = systems::bound_to(Network::info(), {}, {});
   bound.scalars.free = {"k9"};
-  const auto whole = systems::Registered<Network>::make(bound);
+  const auto whole = systems::recorded<Network>(bound);
   const std::vector<double> state{1.6563516576558746,    352329753.92793924,     1.0,
                                   0.0038843824790898043, 3.7708607296986027e-10, 0.08021161610521155};
   const std::vector<systems::LinearTotal> totals = systems::linear_totals(*whole);
@@ -104,7 +104,7 @@ class Epidemic {
 };
 
 TEST(HopfOfNetworks, InTheSizeOfAPopulation) {
-  const auto whole = systems::Registered<Epidemic>::make(systems::bound_to(Epidemic::info(), {}, {}));
+  const auto whole = systems::recorded<Epidemic>(systems::bound_to(Epidemic::info(), {}, {}));
   const std::vector<double> state{1.02, 1.0, 1.0 / 0.12};
   const auto system = systems::without_totals(
       whole, systems::linear_totals(*whole),

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -52,7 +52,7 @@ class DoubleWell {
 };
 
 inline std::shared_ptr<const systems::System> double_well(const std::map<std::string, double>& parameters) {
-  return systems::Registered<DoubleWell>::make(systems::bound_to(DoubleWell::info(), parameters, {}));
+  return systems::recorded<DoubleWell>(systems::bound_to(DoubleWell::info(), parameters, {}));
 }
 
 }  // namespace orbweaver::test

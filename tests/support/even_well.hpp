@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -67,7 +67,7 @@ class EvenWell {
 };
 
 inline std::shared_ptr<const systems::System> even_well(const std::map<std::string, double>& parameters) {
-  return systems::Registered<EvenWell>::make(systems::bound_to(EvenWell::info(), parameters, {}));
+  return systems::recorded<EvenWell>(systems::bound_to(EvenWell::info(), parameters, {}));
 }
 
 }  // namespace orbweaver::test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 
 namespace orbweaver::test {
@@ -281,7 +281,7 @@ class CentralField {
 template <class Model>
 std::shared_ptr<const systems::System> reduced_model(const std::map<std::string, double>& parameters = {},
                                                      const systems::FamilyScalars& scalars = {}) {
-  return systems::reduced(systems::Registered<Model>::make(systems::bound_to(Model::info(), parameters, {}, scalars)));
+  return systems::reduced(systems::recorded<Model>(systems::bound_to(Model::info(), parameters, {}, scalars)));
 }
 
 }  // namespace orbweaver::test

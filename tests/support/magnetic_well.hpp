@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -83,7 +83,7 @@ class MagneticWell {
 };
 
 inline std::shared_ptr<const systems::System> magnetic_well(const std::map<std::string, double>& parameters) {
-  return systems::Registered<MagneticWell>::make(systems::bound_to(MagneticWell::info(), parameters, {}));
+  return systems::recorded<MagneticWell>(systems::bound_to(MagneticWell::info(), parameters, {}));
 }
 
 }  // namespace orbweaver::test

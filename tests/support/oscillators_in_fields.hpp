@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -86,7 +86,7 @@ class OscillatorsInFields {
 };
 
 inline std::shared_ptr<const systems::System> oscillators_in_fields(const std::map<std::string, double>& parameters) {
-  return systems::Registered<OscillatorsInFields>::make(systems::bound_to(OscillatorsInFields::info(), parameters, {}));
+  return systems::recorded<OscillatorsInFields>(systems::bound_to(OscillatorsInFields::info(), parameters, {}));
 }
 
 }  // namespace orbweaver::test

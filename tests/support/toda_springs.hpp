@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -61,7 +61,7 @@ class TodaSprings {
 };
 
 inline std::shared_ptr<const systems::System> toda_springs(const std::map<std::string, double>& parameters) {
-  return systems::Registered<TodaSprings>::make(systems::bound_to(TodaSprings::info(), parameters, {}));
+  return systems::recorded<TodaSprings>(systems::bound_to(TodaSprings::info(), parameters, {}));
 }
 
 }  // namespace orbweaver::test

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -70,7 +70,7 @@ class TrefoilWell {
 };
 
 inline std::shared_ptr<const systems::System> trefoil_well(const std::map<std::string, double>& parameters) {
-  return systems::Registered<TrefoilWell>::make(systems::bound_to(TrefoilWell::info(), parameters, {}));
+  return systems::recorded<TrefoilWell>(systems::bound_to(TrefoilWell::info(), parameters, {}));
 }
 
 }  // namespace orbweaver::test

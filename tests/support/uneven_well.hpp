@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -65,7 +65,7 @@ class UnevenWell {
 };
 
 inline std::shared_ptr<const systems::System> uneven_well(const std::map<std::string, double>& parameters) {
-  return systems::Registered<UnevenWell>::make(systems::bound_to(UnevenWell::info(), parameters, {}));
+  return systems::recorded<UnevenWell>(systems::bound_to(UnevenWell::info(), parameters, {}));
 }
 
 }  // namespace orbweaver::test

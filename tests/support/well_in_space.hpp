@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 
 namespace orbweaver::test {
@@ -132,7 +132,7 @@ class WellInSpace {
 /// Coefficients that are not given are 0.
 template <class Well>
 std::shared_ptr<const systems::System> well_in_space(const std::map<std::string, double>& coefficients) {
-  return systems::Registered<Well>::make(systems::bound_to(Well::info(), coefficients, {}));
+  return systems::recorded<Well>(systems::bound_to(Well::info(), coefficients, {}));
 }
 
 }  // namespace orbweaver::test

@@ -9,8 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/survey/verify/verify.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "survey/atlas.hpp"
 
@@ -56,11 +55,7 @@ class FitzHughNagumo {
 namespace {
 
 scene::Scene scene_of(const std::vector<std::string>& more) {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<FitzHughNagumo>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<FitzHughNagumo>();
   std::vector<std::string> settings{"system={name: fitzhugh_nagumo}",
                                     "starts={fixed_points: {grid: [[-1.2], [-0.6]]}}",
                                     "continuation.free=I",

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/isola.hpp"
 #include "survey/atlas.hpp"
 
@@ -31,11 +31,7 @@ std::string start(const std::string& name, double s, double radius = 1.0, double
 
 survey::Summary survey_of(const std::string& parameters, const std::string& starts, double most,
                           const std::vector<std::string>& more = {}) {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<test::Isola>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<test::Isola>();
   const core::Communicator comm;
   std::vector<std::string> all{"system={name: isola, parameters: {" + parameters + "}}",
                                "starts={states: [" + starts + "]}",

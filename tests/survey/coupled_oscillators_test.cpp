@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbweaver/systems/model/model_system.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "survey/atlas.hpp"
 #include "survey/same_tree.hpp"
@@ -57,11 +56,7 @@ class CoupledOscillators {
 namespace {
 
 test::Atlas atlas_with(const std::string& key) {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<CoupledOscillators>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<CoupledOscillators>();
   const core::Communicator comm;
   const scene::Scene scene =
       scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/van_der_pol.yaml",

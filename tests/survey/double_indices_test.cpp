@@ -133,7 +133,7 @@ TEST(DoubleIndices, PassTogether) {
 // planes of the two pairs were compared from orbit to orbit, which are rounding's: steps were halved until none was
 // left.
 TEST(DoubleIndices, HoldNoFamilyUp) {
-  const auto system = systems::Registered<Ring>::make(systems::bound_to(Ring::info(), {}, {}));
+  const auto system = systems::recorded<Ring>(systems::bound_to(Ring::info(), {}, {}));
   for (const std::string start : {"", "continuation.start=0.003", "continuation.start=0.05"}) {
     SCOPED_TRACE(start);
     const test::Atlas atlas = test::survey_of(

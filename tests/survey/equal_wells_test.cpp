@@ -10,8 +10,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "orbweaver/systems/model/model_system.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "survey/atlas.hpp"
 
@@ -63,7 +62,7 @@ class EqualWells {
 TEST(EqualWells, AThousandFamiliesOfOnePeriodAreNotComparedByLoops) {
   constexpr int wells = 1000;
   constexpr double most_mib = 200.0;
-  systems::add_registry_lines(std::array{systems::registry_line<EqualWells>});
+  systems::add_recorded<EqualWells>();
   std::vector<std::string> places(wells);
   for (int n = 0; n < wells; ++n) places[static_cast<std::size_t>(n)] = fmt::format("{}", 2.0 * std::numbers::pi * n);
   const core::Communicator comm;

@@ -11,8 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/survey/verify/verify.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
@@ -73,7 +72,7 @@ class FlatCrossings : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     world = std::make_unique<core::Communicator>();
-    systems::add_registry_lines(std::array{systems::registry_line<Mathieu>});
+    systems::add_recorded<Mathieu>();
     const scene::Scene scene =
         scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/duffing.yaml",
                     {"system={name: mathieu}", "starts={fixed_points: {grid: [[0]]}}", "continuation={free: eps}",

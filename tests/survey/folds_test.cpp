@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "survey/surveyed_well.hpp"
 
@@ -66,8 +66,8 @@ namespace {
 
 /// The energies at which T turns, in their order along the family.
 std::vector<double> folds(const std::string& start, const std::string& step) {
-  const auto spring = systems::Registered<Spring>::make(
-      systems::bound_to(Spring::info(), {{"a", 0.0384}, {"b", 0.03904}, {"c", 0.01219}}, {}));
+  const auto spring =
+      systems::recorded<Spring>(systems::bound_to(Spring::info(), {{"a", 0.0384}, {"b", 0.03904}, {"c", 0.01219}}, {}));
   const test::Atlas atlas =
       test::survey_of(spring, {"starts={fixed_points: {grid: [[0], [0]]}}", "limits.energy=[0, 1.2]", "limits.period=8",
                                "continuation.start=" + start, "continuation.step=" + step});

@@ -9,8 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbweaver/systems/model/model_system.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "survey/atlas.hpp"
 
@@ -52,11 +51,7 @@ class Lure {
 namespace {
 
 scene::Scene scene_of(const std::vector<std::string>& more) {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<Lure>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<Lure>();
   std::vector<std::string> settings{"system={name: lure}",       "starts={fixed_points: {grid: [[0], [0], [0]]}}",
                                     "continuation.free=alpha",   "limits.parameter=[-1.4, 1.8]",
                                     "limits.period=100",         "compute.stability=true",

@@ -17,8 +17,8 @@
 
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/survey/verify/verify.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "orbweaver/systems/registry.hpp"
-#include "registry_lines.hpp"
 #include "support/lattice.hpp"
 #include "survey/atlas.hpp"
 #include "survey/same_tree.hpp"
@@ -30,13 +30,9 @@ using namespace orbweaver;
 using testing::HasSubstr;
 
 scene::Scene scene_of(const std::string& system, const std::vector<std::string>& more) {
-  static const bool is_added = [] {
-    const std::array lines{systems::registry_line<test::Lattice>, systems::registry_line<test::LatticeByHand>,
-                           systems::registry_line<test::CentralField>};
-    systems::add_registry_lines(lines);
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<test::Lattice>();
+  systems::add_recorded<test::LatticeByHand>();
+  systems::add_recorded<test::CentralField>();
   std::vector<std::string> all{"system.name=" + system, "starts.fixed_points.names={}",
                                "starts.fixed_points.letters={}", "starts.sweep.period=auto"};
   all.insert(all.end(), more.begin(), more.end());

@@ -13,8 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "orbweaver/survey/verify/verify.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/described.hpp"
 #include "survey/atlas.hpp"
 #include "survey/scenes.hpp"
@@ -128,12 +127,9 @@ class RestWithPitchforks {
 namespace {
 
 void add_systems() {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<Pitchforks>, systems::registry_line<DrivenPitchfork>,
-                                           systems::registry_line<RestWithPitchforks>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<Pitchforks>();
+  systems::add_recorded<DrivenPitchfork>();
+  systems::add_recorded<RestWithPitchforks>();
 }
 
 test::Atlas atlas_of(const std::string& system, const std::string& state, const std::vector<std::string>& more) {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/three_oscillators.hpp"
 #include "survey/atlas.hpp"
 #include "survey/atlas_records.hpp"
@@ -21,11 +21,7 @@ using testing::HasSubstr;
 using testing::SizeIs;
 
 scene::Scene scene_of(std::vector<std::string> settings) {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<test::ThreeOscillators>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<test::ThreeOscillators>();
   settings.insert(settings.begin(),
                   {"system.name=three_oscillators", "starts.fixed_points.names={}", "starts.fixed_points.letters={}",
                    "starts.fixed_points.grid=[[0], [0], [0]]", "starts.sweep.period=auto", "survey.depth=0",

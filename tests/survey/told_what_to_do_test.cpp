@@ -29,7 +29,7 @@ class ForgetfulOscillator : public test::DrivenOscillator {
 };
 
 TEST(ToldWhatToDo, WhereADriveIsNotDeclared) {
-  const auto system = systems::Registered<ForgetfulOscillator>::make(
+  const auto system = systems::recorded<ForgetfulOscillator>(
       systems::bound_to(test::DrivenOscillator::info(), {{"d", 0.1}, {"s", 1.0}, {"c", 0.0}, {"F", 0.3}, {"w", 0.6}},
                         {}, {.free = {"w"}}));
   scene::Scene scene;

@@ -26,7 +26,7 @@ using testing::HasSubstr;
 
 // Nothing rests at every phase of a drive; the symmetry is about the origin.
 TEST(UndeclaredFromStates, HasTheHalfTurnOfADrivenSystem) {
-  const auto system = systems::Registered<test::DrivenOscillator>::make(
+  const auto system = systems::recorded<test::DrivenOscillator>(
       systems::bound_to(test::DrivenOscillator::info(), {{"d", 0.1}, {"s", 1.0}, {"c", 0.0}, {"F", 0.3}, {"w", 0.6}},
                         {}, {.free = {"w"}}));
   EXPECT_THAT(survey::undeclared(*system, {}, {{0.4, 0.1, 0.0}}).symmetries,

@@ -9,7 +9,7 @@
 
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/survey/run/survey.hpp"
-#include "registry_lines.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "support/driven_oscillator.hpp"
 #include "support/oscillators_in_fields.hpp"
 #include "survey/atlas.hpp"
@@ -28,11 +28,7 @@ struct Driven {
 
 Driven driven(const std::string& parameters, const std::string& place, const std::string& most,
               const std::string& longest) {
-  static const bool is_added = [] {
-    systems::add_registry_lines(std::array{systems::registry_line<test::DrivenOscillator>});
-    return true;
-  }();
-  static_cast<void>(is_added);
+  systems::add_recorded<test::DrivenOscillator>();
   const core::Communicator comm;
   const scene::Scene scene = scene::load(
       ORBWEAVER_SOURCE_DIR "/drivers/scenes/duffing.yaml",

@@ -10,7 +10,7 @@
 #include <Eigen/Dense>
 
 #include "orbweaver/systems/identities.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "orbweaver/systems/reduced_system.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "support/described.hpp"
@@ -100,7 +100,7 @@ class Ring {
 
 template <class Model>
 std::shared_ptr<const System> whole(const std::map<std::string, double>& parameters = {}) {
-  return Registered<Model>::make(bound_to(Model::info(), parameters, {}));
+  return recorded<Model>(bound_to(Model::info(), parameters, {}));
 }
 
 std::vector<double> numbers(const VectorXd& vector) { return {vector.begin(), vector.end()}; }

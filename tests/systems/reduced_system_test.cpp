@@ -80,7 +80,7 @@ TEST(ReducedSystem, LeavesOutTwoCoordinatesAQuantity) {
 }
 
 TEST(ReducedSystem, IsTheSystemWhereOneQuantityIsConserved) {
-  const auto plain = Registered<LatticeByHand>::make(bound_to(LatticeByHand::info(), {}, {}));
+  const auto plain = recorded<LatticeByHand>(bound_to(LatticeByHand::info(), {}, {}));
   EXPECT_EQ(reduced(plain), plain);
   EXPECT_EQ(whole_of(*plain), nullptr);
   EXPECT_EQ(why_not_reduced(*plain), "");
@@ -256,7 +256,7 @@ class ToldLattice {
 
 template <Told told>
 std::string obstacle() {
-  const auto plain = Registered<ToldLattice<told>>::make(bound_to(Lattice::info(), {}, {}));
+  const auto plain = recorded<ToldLattice<told>>(bound_to(Lattice::info(), {}, {}));
   EXPECT_EQ(reduced(plain), plain);
   return why_not_reduced(*plain);
 }
@@ -282,7 +282,7 @@ class EnergyAlone : public Model {
 };
 
 TEST(ReducedSystem, AMomentumThatIsNotNamedIsTold) {
-  const auto made = []<class Model>() { return Registered<EnergyAlone<Model>>::make(bound_to(Model::info(), {}, {})); };
+  const auto made = []<class Model>() { return recorded<EnergyAlone<Model>>(bound_to(Model::info(), {}, {})); };
   EXPECT_THAT(undeclared_translations(*made.operator()<Lattice>()), ElementsAre("x1", "x2", "x3"));
   EXPECT_THAT(undeclared_translations(*made.operator()<CentralField>()), ElementsAre("phi"));
   EXPECT_THAT(undeclared_translations(*reduced_model<Lattice>()), ElementsAre());

@@ -14,7 +14,7 @@
 
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/systems/identities.hpp"
-#include "orbweaver/systems/model/model_system.hpp"
+#include "orbweaver/systems/recorded_model.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "structure_error.hpp"
 #include "systems/samples.hpp"
@@ -116,7 +116,7 @@ class Forgetful : public Springs {
 
 std::shared_ptr<const System> springs(const std::map<std::string, double>& given,
                                       const std::vector<std::string>& effects = {}) {
-  return Registered<Springs>::make(bound_to(Springs::info(), given, effects));
+  return recorded<Springs>(bound_to(Springs::info(), given, effects));
 }
 
 std::vector<std::string> names_of(const std::vector<Symmetry>& symmetries) {
@@ -264,7 +264,7 @@ TEST(Structure, OnesThatDoNotFitTheirModelAreRefusedByTheItemThatDoesNot) {
 TEST(Structure, WhatTheFieldKeepsIsNamed) {
   const auto made = []<class Model>(const std::map<std::string, double>& given,
                                     const std::vector<std::string>& effects = {}) {
-    return [=] { static_cast<void>(Registered<Model>::make(bound_to(Springs::info(), given, effects))); };
+    return [=] { static_cast<void>(recorded<Model>(bound_to(Springs::info(), given, effects))); };
   };
   EXPECT_THAT((made.operator()<Forgetful<0>>({})),
               testing::ThrowsMessage<StructureError>(testing::AllOf(

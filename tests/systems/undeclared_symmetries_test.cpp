@@ -42,7 +42,7 @@ TEST(UndeclaredSymmetries, AreFoundAboutOtherPoints) {
 // A pendulum that is pushed to both sides alike: half a period later it swings to the other one.
 TEST(UndeclaredSymmetries, HaveHalfATurnOfADrivesPhase) {
   const auto pushed = [](double torque) {
-    return systems::Registered<test::DrivenOscillator>::make(
+    return systems::recorded<test::DrivenOscillator>(
         systems::bound_to(test::DrivenOscillator::info(),
                           {{"d", 0.1}, {"s", 1.0}, {"c", torque}, {"F", 0.3}, {"w", 0.6}}, {}, {.free = {"F"}}));
   };
@@ -54,7 +54,7 @@ TEST(UndeclaredSymmetries, HaveHalfATurnOfADrivesPhase) {
 TEST(UndeclaredSymmetries, AreThoseAtAllValuesOfAParameterThatMoves) {
   const std::map<std::string, double> well{{"b", 0.0}, {"k2", 3.0}};
   const auto moving = [&](const std::string& name) {
-    return systems::Registered<test::MagneticWell>::make(
+    return systems::recorded<test::MagneticWell>(
         systems::bound_to(test::MagneticWell::info(), well, {}, {.free = {name}}));
   };
   EXPECT_THAT(undeclared_symmetries(*moving("b"), origin), IsEmpty());

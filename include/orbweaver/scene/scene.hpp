@@ -17,8 +17,6 @@ namespace orbweaver::scene {
 
 struct SystemChoice {
   std::string name;
-  std::string plugin;         ///< the file that brings it, as the scene says; "" for a system of the program
-  std::string plugin_source;  ///< the hash of that plugin's source (systems::Plugin)
   std::shared_ptr<const systems::ModelText> model;  ///< of the scene's own equations; null for another system
   std::map<std::string, double> parameters;
   std::vector<std::string> effects;
@@ -207,5 +205,9 @@ struct Scene {
 /// The same for a text; `origin` stands in messages where a file name would.
 [[nodiscard]] Scene parse(const std::string& text, const std::string& origin,
                           const std::vector<std::string>& overrides = {});
+
+/// What the text of a scene says of a key that holds a value ("section.coordinate"), as it is written; "" where it does
+/// not. Nothing else of it is read or checked.
+[[nodiscard]] std::string written_value(const std::string& text, const std::string& key);
 
 }  // namespace orbweaver::scene

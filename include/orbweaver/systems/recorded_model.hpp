@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "orbweaver/model/recorded.hpp"
-#include "orbweaver/systems/model/bound.hpp"
+#include "orbweaver/systems/model/checks.hpp"
+#include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "orbweaver/systems/text/system_of.hpp"
 
@@ -55,6 +56,12 @@ template <class Model>
       built.guards.push_back(own.guard(static_cast<int>(k), z.data()).node());
   built.graph = recording.graph();
   return system_of(std::move(built), std::move(structure), bound);
+}
+
+/// From then on its name stands for it in scenes. Throws as add_recorded does.
+template <class Model>
+void add_recorded() {
+  add_recorded(Model::info(), recorded<Model>);
 }
 
 }  // namespace orbweaver::systems

@@ -5,19 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "orbweaver/systems/model/bound.hpp"
 #include "orbweaver/systems/model_info.hpp"
 #include "orbweaver/systems/system.hpp"
 #include "orbweaver/systems/text/model_text.hpp"
 
 namespace orbweaver::systems {
 
-/// Names of all registered systems.
+using SystemMaker = std::shared_ptr<const System> (*)(const Bound& bound);
+/// Adds a model that a program has in C++ (systems/recorded_model.hpp); a later one of that name takes its place. Throws
+/// core::InputError where a name or a meaning cannot be shown, or a system of the program has its name.
+void add_recorded(ModelInfo info, SystemMaker make);
+
+/// Names of all systems: the program's, and those added.
 [[nodiscard]] std::vector<std::string> system_names();
 
 /// What may be asked of the system `name`. Throws core::InputError naming the known ones.
 [[nodiscard]] const ModelInfo& model_info(const std::string& name);
 
-/// The text of a system of the program (docs/models.md); "" of a plugin's. Throws core::InputError as model_info.
+/// The text of a system of the program (docs/models.md); "" of a recorded one. Throws core::InputError as model_info.
 [[nodiscard]] std::string system_text(const std::string& name);
 
 /// Adds the model of a scene, by its name; a later one of that name takes its place. Throws core::InputError with the

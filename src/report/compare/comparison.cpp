@@ -29,11 +29,25 @@ std::optional<scene::Scene> scene_of(const archive::Archive& atlas) {
   }
 }
 
-std::string text_of(const systems::System& system, const std::vector<std::string>& effects) {
+std::string text_of(const std::string& system, const std::map<std::string, double>& parameters,
+                    const std::vector<std::string>& effects) {
   std::vector<std::string> words;
-  for (const auto& [name, value] : system.parameters()) words.push_back(fmt::format("{} = {}", name, value));
+  for (const auto& [name, value] : parameters) words.push_back(fmt::format("{} = {}", name, value));
   words.insert(words.end(), effects.begin(), effects.end());
-  return fmt::format("{} ({})", system.info().name, fmt::join(words, ", "));
+  return fmt::format("{} ({})", system, fmt::join(words, ", "));
+}
+
+std::string text_of(const scene::Scene& scene) {
+  const auto system = survey::system_of(scene);
+  return text_of(system->info().name, system->parameters(), scene.system.effects);
+}
+
+/// As the head says it.
+std::string text_of(const archive::Header& header) {
+  std::map<std::string, double> parameters;
+  for (std::size_t i = 0; i < header.parameter_names.size(); ++i)
+    parameters[header.parameter_names[i]] = header.parameter_values[i];
+  return text_of(header.system, parameters, header.effects);
 }
 
 // What makes the two atlases ones of different systems; empty: nothing.
@@ -77,21 +91,23 @@ Comparison compare(const archive::Archive& a, const archive::Archive& b, const C
   result.b = size_of(b);
   const std::optional<scene::Scene> scene_a = scene_of(a);
   const std::optional<scene::Scene> scene_b = scene_of(b);
-  std::shared_ptr<const systems::System> system;
-  std::string name_a;
-  std::string name_b;
+  const std::optional<scene::Scene>& known = scene_a ? scene_a : scene_b;
+  const std::shared_ptr<const systems::System> system = known ? survey::system_of(*known) : nullptr;
+  std::string name_a = text_of(a.header());
+  std::string name_b = text_of(b.header());
   if (scene_a && scene_b) {
-    system = survey::system_of(*scene_a);
-    name_a = text_of(*system, scene_a->system.effects);
-    name_b = text_of(*survey::system_of(*scene_b), scene_b->system.effects);
+    name_a = text_of(*scene_a);
+    name_b = text_of(*scene_b);
     for (const scene::Difference& difference : scene::differences(*scene_a, *scene_b))
       result.notes.push_back(
           fmt::format("scenes differ: {} is {} in A, {} in B", difference.key, difference.before, difference.now));
   } else {
-    result.notes.emplace_back(
-        "a scene is not one that this Orbweaver reads (the system of a plugin: give it with --plugin FILE): loops are "
-        "not "
-        "compared");
+    result.notes.push_back(
+        fmt::format("{} the formulas are missing, or its scene is not one that this Orbweaver reads{}",
+                    !scene_a && !scene_b ? "of A and of B"
+                    : scene_a            ? "of B"
+                                         : "of A",
+                    known ? "" : ": loops are compared where both have an orbit at one place"));
     if (a.header().scene != b.header().scene) result.notes.emplace_back("scenes differ");
   }
   if (a.header().orbweaver_version != b.header().orbweaver_version)
@@ -103,7 +119,8 @@ Comparison compare(const archive::Archive& a, const archive::Archive& b, const C
   }
   const AtlasTree tree_a(a, options.tolerance);
   const AtlasTree tree_b(b, options.tolerance);
-  const LoopCheck loops(system ? systems::scaled(system, survey::scales_of(a.header(), *system)) : system);
+  const LoopCheck loops(system ? systems::scaled(system, survey::scales_of((scene_a ? a : b).header(), *system))
+                               : system);
   const TreeMatch match = match_trees(tree_a, tree_b, loops);
   FamilyDifferences(tree_a, tree_b, match, loops, options, result).run();
   return result;

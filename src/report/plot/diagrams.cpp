@@ -9,6 +9,7 @@
 
 #include "family_row.hpp"
 #include "gnuplot.hpp"
+#include "orbweaver/document/units.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "plot/axis_titles.hpp"
 #include "plot/family_curves.hpp"
@@ -233,8 +234,8 @@ Figure accuracy_figure(const archive::Archive& atlas, const PlotRequest& request
     figure.series.push_back(std::move(series));
   }
   const auto [low, high] = range_along(curves, abscissa.column);
-  const scene::Scene scene = scene::parse(atlas.header().scene, atlas.path().string());
-  add_level(figure, scene.continuation.tolerance, low, high);
+  const std::string tolerance = scene::written_value(atlas.header().scene, "continuation.tolerance");
+  add_level(figure, document::parse_number(tolerance).value_or(scene::Continuation{}.tolerance), low, high);
   return figure;
 }
 

@@ -198,16 +198,15 @@ std::vector<Figure> spectrum_figures(const archive::Archive& atlas, const PlotRe
 }
 
 std::vector<Figure> section_figures(const archive::Archive& atlas, const PlotRequest& request) {
-  const scene::Scene scene = scene::parse(atlas.header().scene, atlas.path().string());
+  const std::string coordinate = scene::written_value(atlas.header().scene, "section.coordinate");
   const archive::Header& header = atlas.header();
-  if (scene.section.coordinate.empty() || atlas.sections().rows() == 0)
+  if (coordinate.empty() || atlas.sections().rows() == 0)
     throw core::InputError(
         fmt::format("{} has no section points to draw: its scene has no `section:`", atlas.path().string()));
   const FamilyCurves curves(atlas, request.families);
   const std::size_t dimension = header.state_names.size();
   const auto fixed = static_cast<std::size_t>(
-      std::find(header.state_names.begin(), header.state_names.end(), scene.section.coordinate) -
-      header.state_names.begin());
+      std::find(header.state_names.begin(), header.state_names.end(), coordinate) - header.state_names.begin());
   std::vector<std::size_t> rest;
   for (std::size_t i = 0; i < dimension; ++i)
     if (i != fixed) rest.push_back(i);
@@ -216,7 +215,7 @@ std::vector<Figure> section_figures(const archive::Archive& atlas, const PlotReq
   if (dimension == 4) planes = {{fixed % 2 == 0 ? 1 : 0, fixed % 2 == 0 ? 3 : 2}};
   if (dimension == 4 && fixed >= 2) planes.insert(planes.begin(), {0, 1});
   std::vector<Figure> panels;
-  for (const Plane& plane : planes) panels.push_back(section_panel(atlas, curves, plane, scene.section.coordinate));
+  for (const Plane& plane : planes) panels.push_back(section_panel(atlas, curves, plane, coordinate));
   if (panels.front().series.empty()) throw core::InputError("no orbit of these families passes the section");
   for (std::size_t n = 0; n < planes.size(); ++n)
     if (planes[n].second < dimension / 2) add_fixed_places(panels[n], atlas, planes[n], n == 0);

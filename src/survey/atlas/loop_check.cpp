@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orbweaver/archive/read/loop_of.hpp"
 #include "orbweaver/bifurcation/family_jump.hpp"
 #include "orbweaver/bifurcation/identity.hpp"
 #include "orbweaver/continuation/family_curve.hpp"
+#include "orbweaver/loop/curve/in_units.hpp"
 #include "orbweaver/loop/curve/measures.hpp"
 #include "orbweaver/loop/symmetry/alignment.hpp"
 #include "orbweaver/loop/symmetry/isotropy.hpp"
@@ -82,22 +84,53 @@ bool closer_together(const std::shared_ptr<const systems::System>& system, const
   return true;
 }
 
+/// Where both were followed with the same steps it is one of the two, and nothing need be corrected.
+std::optional<LoopAnswer> as_one_of(const systems::Structure& system, const loop::Loop& orbit, const loop::Loop& a,
+                                    const loop::Loop& b, double allowed) {
+  for (const loop::Loop* node : {&a, &b}) {
+    const double in_period = std::abs(orbit.period / node->period - 1.0);
+    if (in_period > allowed) continue;
+    const double distance = std::hypot(in_period, loop::align(system, orbit, *node, allowed).distance);
+    if (distance <= allowed) return LoopAnswer{true, distance, allowed, "the same orbit", true};
+  }
+  return std::nullopt;
+}
+
+/// By modes alone: no image under a symmetry is known, and nothing can be corrected.
+LoopAnswer without_formulas(const OrbitBeside& x) {
+  const archive::Header& header = x.own.atlas.header();
+  systems::Structure known;
+  known.dimension = static_cast<int>(header.state_names.size());
+  known.angles = header.winding_coordinates;
+  systems::Scales scales;
+  if (header.scales.size() > header.state_names.size()) {
+    scales.time = header.scales.front();
+    scales.coordinates.assign(header.scales.begin() + 1, header.scales.begin() + 1 + known.dimension);
+  }
+  LoopAnswer unknown;
+  unknown.decided = false;
+  for (const AtlasTree* tree : {&x.own, &x.other})
+    if (tree->atlas.header().winding_coordinates.size() != header.winding_names.size()) return unknown;
+  const auto loop_at = [&](const AtlasTree& tree, const TreeFamily& family, std::size_t orbit) {
+    return loop::in_scales(archive::loop_of(tree.atlas, family.first_orbit + orbit), scales);
+  };
+  const loop::Loop orbit = loop_at(x.own, x.family, x.orbit);
+  return as_one_of(known, orbit, loop_at(x.other, x.beside, x.segment), loop_at(x.other, x.beside, x.segment + 1),
+                   continuation::same_within(orbit))
+      .value_or(unknown);
+}
+
 }  // namespace
 
 LoopAnswer LoopCheck::ask(const OrbitBeside& x) const {
+  if (!can_compare()) return without_formulas(x);
   const systems::Structure& system = _system->structure();
   const bifurcation::IdentityOptions options;
   const continuation::Orbit orbit = orbit_of(x.own, x.family, x.orbit, *_system);
   const continuation::Orbit a = orbit_of(x.other, x.beside, x.segment, *_system);
   const continuation::Orbit b = orbit_of(x.other, x.beside, x.segment + 1, *_system);
   const double allowed = continuation::same_within(orbit.loop, options.tolerance);
-  // Where both were followed with the same steps it is one of the two, and nothing need be corrected.
-  for (const continuation::Orbit* node : {&a, &b}) {
-    const double in_period = std::abs(orbit.loop.period / node->loop.period - 1.0);
-    if (in_period > allowed) continue;
-    const double distance = std::hypot(in_period, loop::align(system, orbit.loop, node->loop, allowed).distance);
-    if (distance <= allowed) return {true, distance, allowed, "the same orbit", true};
-  }
+  if (const auto answer = as_one_of(system, orbit.loop, a.loop, b.loop, allowed)) return *answer;
   const bifurcation::Comparison found =
       bifurcation::same_family(*_system, a, b, loop::isotropy_of(system, x.beside.isotropy), orbit, options);
   // Where a family turns sharply it crosses the planes across its own chords beyond their ends.
@@ -241,14 +274,15 @@ std::vector<LoopCheck::Sample> LoopCheck::sample(const AtlasTree& own, const Tre
                                                  const TreeFamily& beside, const std::vector<CurveFit>& fits,
                                                  int count) const {
   std::vector<Sample> samples;
-  if (!can_compare() || beside.orbits() < 2) return samples;
+  if (beside.orbits() < 2) return samples;
   std::vector<std::size_t> placed;
   for (std::size_t n = 0; n < fits.size(); ++n)
     if (fits[n].fits()) placed.push_back(n);
   const std::size_t chosen = std::min(placed.size(), static_cast<std::size_t>(std::max(0, count)));
   for (std::size_t c = 0; c < chosen; ++c) {
     const std::size_t n = placed[(2 * c + 1) * placed.size() / (2 * chosen)];
-    samples.push_back({n, ask({own, family, n, other, beside, fits[n].segment})});
+    const LoopAnswer answer = ask({own, family, n, other, beside, fits[n].segment});
+    if (can_compare() || answer.decided) samples.push_back({n, answer});
   }
   return samples;
 }

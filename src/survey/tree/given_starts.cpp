@@ -45,8 +45,7 @@ std::size_t family_row(const archive::Archive& atlas, const std::string& family)
   const auto found = std::find(names.begin(), names.end(), family);
   if (found == names.end())
     throw core::InputError(fmt::format("expected a family of {}, got `{}`; `{}` lists them", atlas.path().string(),
-                                       family,
-                                       core::archive_command_line({"show", atlas.path().string(), "families"})));
+                                       family, core::command_line({"show", atlas.path().string(), "families"})));
   return static_cast<std::size_t>(found - names.begin());
 }
 

@@ -53,7 +53,7 @@ std::string sentence_of(const Finding& f, const FindingNames& names) {
                        f.other_number, f.detail, f.number);
     case FindingKind::base_birth:
       return "its first orbits do not lead back to its equilibrium with the period of the oscillation there, or their "
-             "energy and action do not belong together (of a plugin: conserved<0> and action_density)";
+             "energy and action do not belong together (`conserved` and `action` of the model)";
     case FindingKind::continuum:
       return fmt::format(
           "oscillations that share a period: {} orbits were found near the equilibrium whose neighbours "

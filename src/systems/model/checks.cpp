@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/numerics/random.hpp"
 #include "structure_error.hpp"
 
@@ -173,6 +175,52 @@ void check_symplectic(const Structure& structure) {
 }
 
 }  // namespace
+
+void require_description(const ModelInfo& info) {
+  constexpr std::size_t longest = 200;
+  constexpr std::size_t most_bytes =
+      60'000;  // of the 65,535 of an attribute in HDF5's header, the rest for its description
+  const auto require = [&](const char* what, const std::string& text, bool may_be_empty = false) {
+    if (text.size() > longest || core::printable(text) != text || (text.empty() && !may_be_empty))
+      throw core::InputError(fmt::format("its {} `{}`: expected one line of text with 1 to {} characters", what,
+                                         core::shortened(core::printable(text), longest), longest));
+  };
+  const auto require_apart = [&](const char* what, const std::vector<std::string>& names) {
+    std::size_t width = sizeof(double);
+    for (const std::string& name : names) width = std::max(width, name.size());
+    if (names.size() * width > most_bytes)
+      throw core::InputError(fmt::format("its {} {} are more than an archive's head holds: expected at most {}",
+                                         names.size(), what, most_bytes / width));
+    std::set<std::string> known;
+    for (const std::string& name : names)
+      if (!known.insert(name).second)
+        throw core::InputError(fmt::format("two of its {} are named `{}`: expected a name for each", what, name));
+  };
+  const auto require_parameters = [&](const std::vector<Parameter>& parameters) {
+    for (const Parameter& parameter : parameters) {
+      require("name of a parameter", parameter.name);
+      if (!std::isfinite(parameter.standard))
+        throw core::InputError(fmt::format("its parameter `{}` has the standard value {}: expected a finite number",
+                                           parameter.name, parameter.standard));
+      require("unit of a parameter", parameter.unit, true);
+      require("meaning of a parameter", parameter.meaning, true);
+    }
+  };
+  require("name", info.name);
+  require("title", info.title, true);
+  require("meaning", info.meaning, true);
+  for (const std::string& name : info.state_names) require("name of a coordinate", name);
+  for (const std::string& name : info.winding_names) require("name of a winding number", name, true);
+  require_apart("coordinates", info.state_names);
+  require_parameters(info.parameters);
+  std::vector<std::string> parameters;
+  for (const Parameter& parameter : info.parameters) parameters.push_back(parameter.name);
+  require_apart("parameters", parameters);
+  for (const Effect& effect : info.effects) {
+    require("name of an effect", effect.name);
+    require_parameters(effect.parameters);
+  }
+}
 
 void check(const Structure& structure, const ModelInfo& info, int dimension, int quantities) {
   check_sizes(structure, info, dimension);

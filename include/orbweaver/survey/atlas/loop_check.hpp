@@ -35,18 +35,19 @@ struct OrbitBeside {
 /// Holds loops of one atlas against families of the other.
 class LoopCheck {
  public:
-  /// `system`, in whose scales loops are compared: null where the scene's is not known here; then no loop is compared.
+  /// `system`, in whose scales loops are compared: null where its formulas are missing; then loops are compared by their
+  /// modes alone, and only those of orbits that both atlases have at one place.
   explicit LoopCheck(std::shared_ptr<const systems::System> system) : _system(std::move(system)) {}
 
   [[nodiscard]] bool can_compare() const { return _system != nullptr; }
   [[nodiscard]] const systems::Structure* structure() const { return _system ? &_system->structure() : nullptr; }
 
-  /// Requires can_compare().
   [[nodiscard]] LoopAnswer ask(const OrbitBeside& x) const;
 
   /// Of an orbit that is the other family's (`ask`): whether the orbits from it to one of the neighbours are one curve.
   /// Planes across a chord meet all families there, and beside a narrow gap the other one may be the nearer; beside a
   /// crossing it may have symmetries that the neighbours lack. False too where that cannot be told.
+  /// Requires can_compare(), as do the next two.
   [[nodiscard]] bool is_on_curve(const OrbitBeside& x) const;
 
   /// Whether the orbit at a crossing of the atlas, gone around as what is born there, lies on `beside` between its
@@ -60,7 +61,8 @@ class LoopCheck {
   [[nodiscard]] std::optional<double> arclength_of(const loop::Loop& loop, const AtlasTree& tree,
                                                    const TreeFamily& beside, std::size_t segment) const;
 
-  /// `count` orbits of `family`, evenly among those that have a place on `other` (`fits`: of all its orbits).
+  /// `count` orbits of `family`, evenly among those that have a place on `other` (`fits`: of all its orbits); without
+  /// formulas those of them that are compared.
   struct Sample {
     std::size_t orbit = 0;
     LoopAnswer answer;

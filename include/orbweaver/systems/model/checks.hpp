@@ -11,6 +11,10 @@
 
 namespace orbweaver::systems {
 
+/// Throws core::InputError where a name or a meaning cannot be shown as it is: empty, of more than a line, with control
+/// characters or bytes that are no UTF-8, or longer than names are.
+void require_description(const ModelInfo& info);
+
 /// The effects asked for, and every parameter of the system and of them by name: what was given, and the standard
 /// values for the rest. Throws core::InputError on an unknown or repeated effect, an unknown parameter, one whose
 /// effect is not asked for (free ones too), and a value that is not finite or out of range; the message says what is

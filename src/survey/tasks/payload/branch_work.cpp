@@ -15,7 +15,7 @@ BranchWork unpack_branch_work(const std::string& bytes) { return from_payload<Br
 
 BranchOutcome unpack_branch_outcome(const std::string& bytes) {
   BranchOutcome outcome = from_payload<BranchOutcome>(bytes);
-  outcome.end.detail = core::recordable(outcome.end.detail);  // what a plugin has thrown
+  outcome.end.detail = core::recordable(outcome.end.detail);  // of any bytes
   return outcome;
 }
 

@@ -17,7 +17,7 @@ LocateWork unpack_locate_work(const std::string& bytes) { return from_payload<Lo
 
 LocateOutcome unpack_locate_outcome(const std::string& bytes) {
   LocateOutcome outcome = from_payload<LocateOutcome>(bytes);
-  outcome.remark = core::recordable(outcome.remark);  // what a plugin has thrown
+  outcome.remark = core::recordable(outcome.remark);  // of any bytes
   return outcome;
 }
 
