@@ -43,7 +43,7 @@ void make_folder(const std::filesystem::path& directory) {
 void measure_on(const core::Communicator& comm, const CostOptions& options) {
   scene::Scene scene;
   agree(comm, [&] { scene = options.scene.load(); });
-  require_same_input(comm, scene.text);
+  require_same_input(comm, scene.text + scene.model);
   agree(comm, [&] {
     if (!options.directory.empty() && comm.is_root()) make_folder(options.directory);
   });

@@ -66,7 +66,7 @@ int survey_on(const core::Communicator& comm, const SurveyOptions& options, cons
     survey::require_memory(survey::expected_work(scene, *system));
     if (options.walltime) run_options.walltime = seconds_of(*options.walltime);
   });
-  require_same_input(comm, scene.text);
+  require_same_input(comm, scene.text + scene.model);
   stop_on_signals();  // again, whatever MPI and PETSc made of them
   agree(comm, [&] {
     if (!comm.is_root()) return;  // folders need not look alike from every machine

@@ -12,6 +12,22 @@
 
 namespace orbweaver::core {
 
+namespace {
+
+std::string digits_of(boost::uuids::detail::sha1& hash) {
+  boost::uuids::detail::sha1::digest_type digest;
+  hash.get_digest(digest);
+  return fmt::format("{:08x}", fmt::join(digest, ""));
+}
+
+}  // namespace
+
+std::string text_hash(std::string_view text) {
+  boost::uuids::detail::sha1 hash;
+  hash.process_bytes(text.data(), text.size());
+  return digits_of(hash);
+}
+
 std::string file_hash(const std::vector<std::filesystem::path>& files) {
   boost::uuids::detail::sha1 hash;
   for (const std::filesystem::path& file : files) {
@@ -22,9 +38,7 @@ std::string file_hash(const std::vector<std::filesystem::path>& files) {
     while (stream.read(bytes.data(), bytes.size()) || stream.gcount() > 0)
       hash.process_bytes(bytes.data(), static_cast<std::size_t>(stream.gcount()));
   }
-  boost::uuids::detail::sha1::digest_type digest;
-  hash.get_digest(digest);
-  return fmt::format("{:08x}", fmt::join(digest, ""));
+  return digits_of(hash);
 }
 
 }  // namespace orbweaver::core

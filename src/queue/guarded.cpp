@@ -45,7 +45,7 @@ std::string unresponsive_text(const std::string& work, const Deadlines::Unrespon
           ? fmt::format("{} was asked to stop and has not come to an end of a step for {:g} s", work, found.seconds)
           : fmt::format("{} was to end after {:g} s and has not done so in the same time again", work, found.seconds);
   return fmt::format(
-      "{} (does the system's field return?); ending the program: what the last flush wrote is safe, and a run that "
+      "{}; ending the program: what the last flush wrote is safe, and a run that "
       "goes on from it begins with that work again",
       late);
 }

@@ -48,7 +48,7 @@ double parameter_value(const std::string& name, const std::string& decimal) {
 
 StoredFamily::StoredFamily(const archive::Archive& atlas, std::size_t family)
     : _atlas(atlas), _system(survey::scaled_system_of(atlas)) {
-  _choice = scene::parse(atlas.header().scene, atlas.path().string()).system;
+  _choice = survey::scene_of(atlas).system;
   _plain = scene::bound_system(_choice);
   if (!_choice.moving.free.empty()) _parameter = _choice.moving.free.front();
   const archive::Table& table = atlas.families();

@@ -40,6 +40,11 @@ bool has_energies(const archive::Archive& atlas) {
 }
 
 const systems::ModelInfo* info_of(const archive::Header& header) {
+  try {
+    if (!header.model.empty()) systems::add_model(systems::read_model_text(header.model, "/model"));
+  } catch (const core::InputError&) {  // of a later version
+    return nullptr;
+  }
   const std::vector<std::string> known = systems::system_names();
   return std::find(known.begin(), known.end(), header.system) == known.end() ? nullptr
                                                                              : &systems::model_info(header.system);

@@ -262,7 +262,10 @@ void add_unknown(const YAML::Node& node, const std::string& path, const std::vec
 std::vector<Value> values_of(const Scene& scene) {
   std::vector<Value> values = Values(scene).get();
   std::vector<Value> unknown;
-  add_unknown(parse_document(scene.text, "scene", true), "", values, unknown);
+  values.push_back({"system.model_file", ""});  // what it holds counts
+  const YAML::Node root = parse_document(scene.text, "scene", true);
+  add_unknown(root, "", values, unknown);
+  if (root["system"]["model_file"]) add_unknown(parse_document(scene.model, "model", true), "system", values, unknown);
   values.insert(values.end(), unknown.begin(), unknown.end());
   return values;
 }

@@ -27,10 +27,11 @@ Field require_key(const Keys& keys, const Field& root, const std::string& key, s
   root.fail(fmt::format("the key `{}`", key), "a scene without it", fmt::format("add for example `{}`", example));
 }
 
-Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& folder) {
+Scene read_scene(const Field& root, const std::optional<std::filesystem::path>& folder, const std::string& model) {
   const Keys keys(root, names_of_keys(root.path()), smallest_scene);
   Scene scene;
-  read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), folder, scene.system);
+  scene.model = model;
+  read_system(require_key(keys, root, "system", "system: {name: double_pendulum}"), folder, scene.system, scene.model);
   if (const auto starts = keys.find("starts")) take_place(*starts, scene.system);
   read_family_scalars(keys.find("continuation"), scene.system);
   const auto bound = bound_system(scene.system);
@@ -80,32 +81,8 @@ std::string read_file(const std::filesystem::path& file) {
 
 namespace {
 
-/// Puts the model of a file into the scene's map, with the values and effects that the scene gives: an archive needs no
-/// other file. Returns whether there was one.
-bool hold_model(const std::optional<std::filesystem::path>& folder, YAML::Node root) {
-  YAML::Node system = root["system"];
-  if (!folder || !system["model_file"]) return false;
-  YAML::Node model = YAML::LoadFile((*folder / system["model_file"].Scalar()).string());
-  for (const auto& value : system["parameters"]) {
-    const std::string name = value.first.Scalar();
-    YAML::Node parameters;
-    parameters.reset(model["parameters"]);
-    for (const auto& effect : model["effects"])
-      if (const YAML::Node own = effect.second["parameters"]; own && own[name]) parameters.reset(own);
-    if (const YAML::Node sizes = model["sizes"]; sizes && sizes[name]) parameters.reset(sizes);
-    if (parameters[name].IsMap())
-      parameters[name]["value"] = value.second;
-    else
-      parameters[name] = value.second;
-  }
-  if (system["effects"]) model["active"] = system["effects"];
-  if (system["scales"]) model["scales"] = system["scales"];
-  root["system"] = model;
-  return true;
-}
-
 Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::string& text, const std::string& origin,
-               const std::vector<std::string>& overrides) {
+               const std::vector<std::string>& overrides, const std::string& model = "") {
   const std::string place = quoted(origin);
   const Source source(place, parse_overrides(overrides));
   const YAML::Node document = parse_document(text, place, true);
@@ -115,9 +92,9 @@ Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::st
         fmt::format("{}:1: expected a scene, a map, got {}; for example {}", place, came, smallest_scene));
   }
   YAML::Node root = apply_overrides(document, source.overrides());
-  Scene scene = read_scene(Field(source, root, "", 1), folder);
-  const bool has_file = hold_model(folder, root);
-  const bool has_hashes = keep_hashes(scene, root) && !has_file;
+  Scene scene = read_scene(Field(source, root, "", 1), folder, model);
+  if (scene.system.model && scene.model.empty()) scene.model = emit(root["system"]);
+  const bool has_hashes = keep_hashes(scene, root);
   scene.text = overrides.empty() && has_hashes ? text : emit(root);
   require_scene_size(scene.text.size(), place);
   return scene;
@@ -125,8 +102,9 @@ Scene parse_in(const std::optional<std::filesystem::path>& folder, const std::st
 
 }  // namespace
 
-Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides) {
-  return parse_in(std::nullopt, text, origin, overrides);
+Scene parse(const std::string& text, const std::string& origin, const std::vector<std::string>& overrides,
+            const std::string& model) {
+  return parse_in(std::nullopt, text, origin, overrides, model);
 }
 
 Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

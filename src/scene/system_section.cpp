@@ -141,21 +141,15 @@ std::vector<std::string> scale_names(const systems::System& system) {
 
 namespace {
 
-/// The model of a file beside the scene, or of a stored scene, which holds it.
-std::shared_ptr<const systems::ModelText> model_of_file(const Field& file, const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / file.text("my_model.yaml", longest_path);
-  const std::string place = quoted(path.string());
+/// The text of a model's file beside the scene.
+std::string text_of_file(const Field& file, const std::filesystem::path& path) {
   if (const std::string got = core::unreadable_input(path); !got.empty())
     file.fail("the file of a model, told from the scene's folder", got, "check the path");
   std::ifstream stream(path, std::ios::binary);
   std::string text(longest_scene + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  const Source source(place, {});
-  const YAML::Node root = parse_document(text, place, true);
-  const Field whole(source, root, "", 1);
-  if (!root.IsMap()) whole.fail("a model, a map", whole.got(), "for example `equations: {x': y, y': -x}`");
-  return std::make_shared<const systems::ModelText>(systems::read_model(whole));
+  return text;
 }
 
 bool has_equations(const Field& field) {
@@ -180,27 +174,45 @@ void refuse_plugin(const Field& field, bool is_stored) {
 
 }  // namespace
 
-void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system) {
+void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system,
+                 std::string& model) {
   refuse_plugin(field, !folder);
+  const bool is_stored = !model.empty();
+  const bool is_inline = has_equations(field);
   std::vector<std::string> known = names_of_keys(field.path());
   known.insert(known.end(), {"model_file", "active"});  // docs/models.md
-  if (has_equations(field)) {
-    system.model =
-        std::make_shared<const systems::ModelText>(systems::read_model(field, {"active", "scales", "model_file"}));
-    known.insert(known.end(), systems::model_keys().begin(), systems::model_keys().end());
-  }
+  if (is_inline) known.insert(known.end(), systems::model_keys().begin(), systems::model_keys().end());
   const Keys keys(field, known, "system: {name: double_pendulum}");
   const auto name = keys.find("name");
   const auto file = keys.find("model_file");
-  if (system.model && file) field.fail("equations, or a file that has them", "both", "remove one");
-  if (file && folder) system.model = model_of_file(*file, *folder);
-  if (!name && !system.model)
+  if (is_inline && file) field.fail("equations, or a file that has them", "both", "remove one");
+  if (!name && !is_inline && !file)
     field.fail("the system's `name`, or its `equations`", "a map without them",
                "add for example `name: double_pendulum`");
-  system.name = system.model ? system.model->name : name->choice(systems::system_names());
-  const bool is_inline = system.model && !file;
-  if (file && name && system.model && name->text("my_model") != system.model->name)
-    name->fail(fmt::format("the model's name, `{}`", system.model->name), name->got(), "leave it out");
+  if (is_inline) {
+    system.model =
+        std::make_shared<const systems::ModelText>(systems::read_model(field, {"active", "scales", "model_file"}));
+  } else if (file) {
+    const std::filesystem::path path = folder.value_or("") / file->text("my_model.yaml", longest_path);
+    if (folder) model = text_of_file(*file, path);
+    if (!folder && !is_stored)
+      file->fail("the model's text, stored beside the scene", "none", "write its equations here");
+    system.model = systems::read_model_text(model, quoted(path.string()));
+  } else if (const auto shipped = systems::shipped_model(name->scalar().value_or(""));
+             is_stored && (!shipped || systems::system_text(shipped->name) != model)) {
+    system.model = systems::read_model_text(model, "the model of the archive");  // of another version
+  } else {
+    system.name = name->choice(systems::system_names());
+    system.model = shipped;
+    model = systems::system_text(system.name);
+  }
+  if (system.model) system.name = system.model->name;
+  if (system.model && name && name->text("my_model") != system.name)
+    name->fail(fmt::format("the model's name, `{}`", system.name), name->got(), "leave it out");
+  if ((is_inline || file) && !is_stored && systems::shipped_model(system.name))
+    throw core::InputError(
+        fmt::format("{}: expected a name of its own, got `{}`, which is another system's; give it another `name`",
+                    system.model->place, system.name));
   if (const auto active = keys.find("active"); active && !is_inline)
     active->fail("effects by the key `effects`, as the equations do not stand in the scene", "`active`", "rename it");
   if (const auto effects = keys.find(is_inline ? "active" : "effects")) read_effects(*effects, system);

@@ -4,16 +4,18 @@
 #include <optional>
 #include <vector>
 
+#include "fields.hpp"
 #include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/model_info.hpp"
 #include "orbweaver/systems/system.hpp"
-#include "fields.hpp"
 
 namespace orbweaver::scene {
 
-/// Fills `system`, effects before parameters; throws core::InputError as Field does. `folder`: of the scene's file;
-/// none for a stored scene.
-void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system);
+/// Fills `system`, effects before parameters; throws core::InputError as Field does. `folder`: of the scene's file,
+/// none for a stored scene. `model`: the text stored with it, empty where there is none; then the text of the model,
+/// empty where it stands in the scene or a program has recorded it.
+void read_system(const Field& field, const std::optional<std::filesystem::path>& folder, SystemChoice& system,
+                 std::string& model);
 
 /// Fails at `field`, with what the layer `systems` says, where it refuses to bind the system as chosen.
 void ask_system(const Field& field, const SystemChoice& choice);

@@ -30,9 +30,7 @@ const std::map<std::string, TextSystem>& shipped_systems() {
   static const std::map<std::string, TextSystem> systems = [] {
     std::map<std::string, TextSystem> read;
     for (const auto& [name, text] : shipped_texts()) {
-      const document::Source source(fmt::format("{}.yaml", name), {});
-      const YAML::Node root = document::parse_document(std::string(text), source.origin(), true);
-      const auto model = std::make_shared<const ModelText>(read_model(document::Field(source, root, "", 1)));
+      const auto model = read_model_text(std::string(text), fmt::format("{}.yaml", name));
       read.emplace(name, TextSystem{model, info_of(*model)});
     }
     return read;
@@ -47,7 +45,7 @@ std::map<std::string, TextSystem>& own_systems() {
 }
 
 const TextSystem* find_text(const std::string& name) {
-  for (const std::map<std::string, TextSystem>* systems : {&shipped_systems(), &std::as_const(own_systems())})
+  for (const std::map<std::string, TextSystem>* systems : {&std::as_const(own_systems()), &shipped_systems()})
     if (const auto found = systems->find(name); found != systems->end()) return &found->second;
   return nullptr;
 }
@@ -132,8 +130,21 @@ const ModelInfo& model_info(const std::string& name) {
   throw core::InputError(fmt::format("there is no system '{}'; the systems are: {}", name, joined(system_names())));
 }
 
+std::shared_ptr<const ModelText> shipped_model(const std::string& name) {
+  const auto found = shipped_systems().find(name);
+  return found == shipped_systems().end() ? nullptr : found->second.text;
+}
+
+std::shared_ptr<const ModelText> read_model_text(const std::string& text, const std::string& place) {
+  const document::Source source(place, {});
+  const YAML::Node root = document::parse_document(text, place, true);
+  const document::Field whole(source, root, "", 1);
+  if (!root.IsMap()) whole.fail("a model, a map", whole.got(), "for example `equations: {x': y, y': -x}`");
+  return std::make_shared<const ModelText>(read_model(whole));
+}
+
 void add_model(const std::shared_ptr<const ModelText>& text) {
-  if (shipped_systems().contains(text->name) || recorded_systems().contains(text->name))
+  if (recorded_systems().contains(text->name))
     throw core::InputError(
         fmt::format("{}: expected a name of its own, got `{}`, which is another system's; give it "
                     "another `name`",

@@ -40,6 +40,7 @@ bool same_values(const Column& a, const Column& b) {
 void compare(const Header& a, const Header& b) {
   expect(a.orbweaver_version == b.orbweaver_version, "attribute orbweaver_version");
   expect(a.scene == b.scene, "attribute scene");
+  expect(a.model == b.model, "table model");
   expect(a.state_names == b.state_names, "attribute state_names");
   expect(a.winding_names == b.winding_names, "attribute winding_names");
   expect(a.winding_coordinates == b.winding_coordinates, "attribute winding_coordinates");

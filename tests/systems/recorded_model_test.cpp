@@ -8,8 +8,6 @@
 #include <gmock/gmock.h>
 
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/document/document.hpp"
-#include "orbweaver/systems/text/model_text.hpp"
 
 namespace orbweaver::systems::recorded_model_test {
 namespace {
@@ -65,19 +63,13 @@ class Hardening {
 };
 
 /// The same as text.
-std::shared_ptr<const ModelText> hardening_text() {
-  const std::string text =
-      "{name: hardening_text, coordinates: [q], momenta: [p], hamiltonian: p^2/2 + k*q^2/2 + q^4/3, parameters: {k: "
-      "1}}";
-  const document::Source source("hardening.yaml", {});
-  return std::make_shared<const ModelText>(
-      read_model(document::Field(source, document::parse_document(text, source.origin(), true), "", 1)));
-}
+const char* const hardening_text =
+    "{name: hardening_text, coordinates: [q], momenta: [p], hamiltonian: p^2/2 + k*q^2/2 + q^4/3, parameters: {k: 1}}";
 
 TEST(RecordedModel, IsASystemByItsNameAsItsTextIs) {
   add_recorded<Hardening>();
   EXPECT_THAT(system_names(), testing::Contains("hardening"));
-  add_model(hardening_text());
+  add_model(read_model_text(hardening_text, "hardening.yaml"));
   const auto recorded = make_system("hardening", {{"k", 1.5}});
   const auto read = make_system("hardening_text", {{"k", 1.5}});
   EXPECT_TRUE(recorded->structure().symplectic);

@@ -17,7 +17,7 @@ namespace orbweaver::scene {
 
 struct SystemChoice {
   std::string name;
-  std::shared_ptr<const systems::ModelText> model;  ///< of the scene's own equations; null for another system
+  std::shared_ptr<const systems::ModelText> model;  ///< null for one that a program has recorded
   std::map<std::string, double> parameters;
   std::vector<std::string> effects;
   /// Scales that the scene gives, by name: time, a coordinate, a conserved quantity. The others are found (`auto`).
@@ -195,16 +195,18 @@ struct Scene {
   Section section;
   std::vector<Loci> loci;
   Output output;
-  std::string text;  ///< the YAML with overrides applied, as the archive stores it
+  std::string text;   ///< the YAML with overrides applied, as the archive stores it
+  std::string model;  ///< the text of its model (docs/models.md), as well; empty for one that a program has recorded
 };
 
 /// Reads, overrides and checks a scene. `overrides`: "limits.period=30", applied in order before the check.
 /// Throws core::InputError on the first thing wrong: file:line, key, what was expected, what came, what to do.
 [[nodiscard]] Scene load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The same for a text; `origin` stands in messages where a file name would.
+/// The same for a text; `origin` stands in messages where a file name would. `model`: the text of its model where that
+/// is stored beside it (Scene::model).
 [[nodiscard]] Scene parse(const std::string& text, const std::string& origin,
-                          const std::vector<std::string>& overrides = {});
+                          const std::vector<std::string>& overrides = {}, const std::string& model = "");
 
 /// What the text of a scene says of a key that holds a value ("section.coordinate"), as it is written; "" where it does
 /// not. Nothing else of it is read or checked.

@@ -26,8 +26,14 @@ void add_recorded(ModelInfo info, SystemMaker make);
 /// The text of a system of the program (docs/models.md); "" of a recorded one. Throws core::InputError as model_info.
 [[nodiscard]] std::string system_text(const std::string& name);
 
-/// Adds the model of a scene, by its name; a later one of that name takes its place. Throws core::InputError with the
-/// text's place where the name is that of another system, or its formulas are wrong.
+/// The model of a system of the program; null for another name.
+[[nodiscard]] std::shared_ptr<const ModelText> shipped_model(const std::string& name);
+
+/// Reads a model, the text of a file or of an archive; `place` stands before what is wrong with it.
+[[nodiscard]] std::shared_ptr<const ModelText> read_model_text(const std::string& text, const std::string& place);
+
+/// Makes the model the system of its name; a later one of that name takes its place. Throws core::InputError with the
+/// text's place where a program has recorded a model of that name, or its names cannot be shown.
 void add_model(const std::shared_ptr<const ModelText>& text);
 
 /// Binds parameters and effects, in any order of the effects. Throws core::InputError on an unknown system, parameter

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "h5_types.hpp"
+#include "orbweaver/core/file_hash.hpp"
 #include "orbweaver/core/posix_file.hpp"
 #include "schema/row_checksum.hpp"
 
@@ -77,6 +78,7 @@ class Layout {
     write_texts("scale_names", header.scale_names);
     write_numbers("scales", header.scales);
     write_wholes("winding_coordinates", header.winding_coordinates);
+    if (!header.model.empty()) write_text("model_hash", core::text_hash(header.model));
     const std::int64_t sum = header_checksum(format, format_minor, header);
     write_attribute("checksum", h5_memory_type({"", ColumnType::integer, {}}), scalar_space(), &sum);
   }

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "h5_types.hpp"
+#include "orbweaver/core/file_hash.hpp"
 #include "orbweaver/core/input_file.hpp"
 #include "own_dataset.hpp"
 #include "schema/check_records.hpp"
@@ -237,6 +238,22 @@ std::string SerialFile::change_in_header() const {
 }
 
 bool SerialFile::has_table(const std::string& name) const { return is_in_file(_file.get(), name); }
+
+std::string SerialFile::read_model() {
+  if (!has_table("model")) return "";
+  TableSpec spec = model_spec();
+  const std::uint64_t rows = expect_table(spec);
+  if (rows == 0) return "";
+  expect(rows == 1 && spec.columns.front().text_width <= longest_model,
+         fmt::format("has {} models with at most {} bytes; one of at most {} was expected", rows,
+                     spec.columns.front().text_width, longest_model));
+  const Table table = read_table(spec, rows);
+  _header.model = table.texts("text").front();
+  if (has_checksums() && !changed_rows(table, _minor).empty()) return changed_row("model", 0);
+  return text_attribute("model_hash") == std::vector{core::text_hash(_header.model)}
+             ? ""
+             : "has a model whose text does not give the hash in the attribute 'model_hash'";
+}
 
 std::uint64_t SerialFile::expect_table(TableSpec& spec) {
   std::vector<hsize_t> first_shape;

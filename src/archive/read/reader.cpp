@@ -30,6 +30,7 @@ Archive::Archive(const std::filesystem::path& path, ChangedRows changed)
   _equilibria =
       _file->has_table("equilibria") ? read_table(*_file, equilibria_spec(header)) : Table(equilibria_spec(header), 0);
   _findings = _file->has_table("findings") ? read_table(*_file, findings_spec()) : Table(findings_spec(), 0);
+  if (std::string text = _file->read_model(); !text.empty()) _changed.push_back({"model", 0, std::move(text)});
   _mode_values = _file->expect_flat("modes");
   const std::uint64_t map_values = _file->expect_flat("time_maps");
   if (_file->has_checksums()) {

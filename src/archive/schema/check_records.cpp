@@ -103,6 +103,7 @@ void check_header(const Header& header) {
     throw core::InputError(fmt::format("the scene has {} bytes; an archive holds at most {}. Shorten its comments.",
                                        header.scene.size(), longest_scene));
   check_text(record, "the scene", header.scene, longest_scene);
+  check_text(record, "the model", header.model, longest_model);
   for (const std::string& name : header.state_names) check_text(record, "a state name", name);
   for (const std::string& name : header.winding_names) check_text(record, "a winding name", name);
   if (const std::string problem = winding_problem(header); !problem.empty()) expect(false, record, problem);

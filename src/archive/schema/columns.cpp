@@ -313,6 +313,14 @@ const ColumnDefinitions<FindingRecord>& finding_columns() {
   return columns;
 }
 
+const ColumnDefinitions<ModelRecord>& model_columns() {
+  static const ColumnDefinitions<ModelRecord> columns{
+      {"text", &ModelRecord::text, {"", "the model as text (docs/models.md)"}},
+      {"checksum", checksum, {"", "CRC-32 of the row (docs/file_format.md, Checksums)"}},
+  };
+  return columns;
+}
+
 const ColumnDefinitions<OrbitRecord>& segment_orbit_columns() {
   static const ColumnDefinitions<OrbitRecord> columns = [] {
     ColumnDefinitions<OrbitRecord> list = orbit_columns();

@@ -56,6 +56,7 @@ using ColumnDefinitions = std::vector<ColumnDefinition<Record>>;
 [[nodiscard]] const ColumnDefinitions<LocusRecord>& locus_columns();
 [[nodiscard]] const ColumnDefinitions<EquilibriumRecord>& equilibrium_columns();
 [[nodiscard]] const ColumnDefinitions<FindingRecord>& finding_columns();
+[[nodiscard]] const ColumnDefinitions<ModelRecord>& model_columns();
 /// In segments, where rows have no numbers yet, orbits and sections name their family by its key.
 [[nodiscard]] const ColumnDefinitions<OrbitRecord>& segment_orbit_columns();
 [[nodiscard]] const ColumnDefinitions<SectionRecord>& segment_section_columns();

@@ -86,6 +86,8 @@ TableSpec equilibria_spec(const Header& header) { return spec_of("equilibria", e
 
 TableSpec findings_spec() { return spec_of("findings", finding_columns(), {}); }
 
+TableSpec model_spec() { return spec_of("model", model_columns(), {}); }
+
 TableSpec segment_orbits_spec(const Header& header) { return spec_of("orbits", segment_orbit_columns(), header); }
 
 TableSpec segment_sections_spec(const Header& header) { return spec_of("sections", segment_section_columns(), header); }

@@ -32,7 +32,7 @@ struct Order {
 
 Order share_order(MPI_Comm comm, Order order) {
   Header& header = order.header;
-  std::vector<std::string> texts{order.output, header.orbweaver_version, header.scene, header.system};
+  std::vector<std::string> texts{order.output, header.orbweaver_version, header.scene, header.system, header.model};
   order.segments = core::agreed(comm, std::move(order.segments));
   texts = core::agreed(comm, std::move(texts));
   header.state_names = core::agreed(comm, std::move(header.state_names));
@@ -55,6 +55,7 @@ Order share_order(MPI_Comm comm, Order order) {
   header.orbweaver_version = texts[1];
   header.scene = texts[2];
   header.system = texts[3];
+  header.model = texts[4];
   header.pairs = core::agreed(comm, header.pairs);
   header.symplectic = core::agreed(comm, header.symplectic);
   order.block_values = core::agreed(comm, order.block_values);
@@ -268,13 +269,15 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
   RootTables root;
   core::collectively(comm, [&] {
     root = make_root_tables(order.header, is_root ? tables : Records{},
-                            is_root ? order.selection.keys : std::vector<std::string>{}, numbering);
+                            is_root ? order.selection.keys : std::vector<std::string>{},
+                            is_root ? order.header.model : std::string(), numbering);
   });
 
   agree_on_text_widths(comm, root.families);
   agree_on_text_widths(comm, root.crossings);
   agree_on_text_widths(comm, root.loci);
   agree_on_text_widths(comm, root.equilibria);
+  agree_on_text_widths(comm, root.model);
   const std::uint64_t families = core::greatest(comm, root.families.rows());
   const std::uint64_t crossings = core::greatest(comm, root.crossings.rows());
   const std::uint64_t loci = core::greatest(comm, root.loci.rows());
@@ -288,12 +291,14 @@ bool consolidate(MPI_Comm comm, const std::vector<std::filesystem::path>& segmen
                       {root.crossings.spec(), crossings},
                       {sections_spec(order.header), numbering.sections.size()},
                       {root.loci.spec(), loci},
-                      {root.equilibria.spec(), equilibria}},
+                      {root.equilibria.spec(), equilibria},
+                      {root.model.spec(), order.header.model.empty() ? 0 : 1}},
                      {{modes_spec(), numbering.modes_at.back()}, {time_maps_spec(), numbering.maps_at.back()}}});
   file.write_table(root.families, 0);
   file.write_table(root.crossings, 0);
   file.write_table(root.loci, 0);
   file.write_table(root.equilibria, 0);
+  file.write_table(root.model, 0);
   write_orbits(comm, file, order, numbering);
   write_sections(comm, file, order, numbering);
   std::optional<std::vector<FindingRecord>> findings(std::in_place);

@@ -85,6 +85,14 @@ Table equilibria_of(const Header& header, const std::vector<EquilibriumRecord>& 
   return table;
 }
 
+Table model_of(const std::string& text) {
+  const ModelRecord record{text};
+  Table table(model_spec(), text.empty() ? 0 : 1);
+  fill_columns(table, model_columns(), [&](std::size_t) -> const ModelRecord& { return record; });
+  set_checksums(table, 0);
+  return table;
+}
+
 // In the order of the keys.
 std::vector<const FamilyRecord*> family_order(const std::vector<FamilyRecord>& families,
                                               const std::vector<std::string>& keys) {
@@ -123,10 +131,10 @@ Selection selection_of(const Records& tables) {
 }
 
 RootTables make_root_tables(const Header& header, const Records& tables, const std::vector<std::string>& keys,
-                            const Numbering& numbering) {
+                            const std::string& model, const Numbering& numbering) {
   RootTables root{Table(families_spec(), tables.families.size()),
                   Table(crossings_spec(header), tables.crossings.size()), Table(loci_spec(header), tables.loci.size()),
-                  equilibria_of(header, tables.equilibria)};
+                  equilibria_of(header, tables.equilibria), model_of(model)};
   const std::vector<std::size_t> order = crossing_order(tables.crossings);
   const auto crossing = [&](std::size_t row) -> const CrossingRecord& { return tables.crossings[order[row]]; };
   fill_columns(root.crossings, crossing_columns(), crossing);

@@ -14,14 +14,16 @@ struct RootTables {
   Table crossings;
   Table loci;
   Table equilibria;
+  Table model;
 };
 
 /// What `tables` says of the rows of the segments.
 [[nodiscard]] Selection selection_of(const Records& tables);
 
-/// `tables` must have been checked (check_records.hpp); `keys` are its sorted keys.
+/// `tables` must have been checked (check_records.hpp); `keys` are its sorted keys; `model`: its text, of rank 0.
 [[nodiscard]] RootTables make_root_tables(const Header& header, const Records& tables,
-                                          const std::vector<std::string>& keys, const Numbering& numbering);
+                                          const std::vector<std::string>& keys, const std::string& model,
+                                          const Numbering& numbering);
 
 /// /findings, in the order given.
 [[nodiscard]] Table make_findings(const std::vector<FindingRecord>& findings);

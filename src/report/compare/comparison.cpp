@@ -23,7 +23,7 @@ AtlasSize size_of(const archive::Archive& atlas) {
 
 std::optional<scene::Scene> scene_of(const archive::Archive& atlas) {
   try {
-    return scene::parse(atlas.header().scene, atlas.path().string());
+    return survey::scene_of(atlas);
   } catch (const core::InputError&) {
     return std::nullopt;
   }

@@ -251,7 +251,7 @@ void export_auto(std::ostream& out, const archive::Archive& atlas, const ExportS
 }
 
 std::string auto_equations(const archive::Archive& atlas) {
-  scene::SystemChoice choice = scene::parse(atlas.header().scene, atlas.path().string()).system;
+  scene::SystemChoice choice = survey::scene_of(atlas).system;
   choice.moving = {};
   const std::shared_ptr<const systems::System> system = scene::bound_system(choice);
   const auto* with_formulas = dynamic_cast<const systems::FormulaSystem*>(system.get());

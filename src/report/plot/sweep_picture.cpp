@@ -11,7 +11,7 @@
 #include "gnuplot.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/report/sweep_report.hpp"
-#include "orbweaver/scene/scene.hpp"
+#include "orbweaver/survey/atlas/stored_orbits.hpp"
 #include "plot/axis_titles.hpp"
 #include "stored_system.hpp"
 
@@ -24,7 +24,7 @@ bool begins_at(const EquilibriumReport& report, const std::string& family) {
 }
 
 std::vector<EquilibriumReport> asked_for(const archive::Archive& atlas, const PlotRequest& request) {
-  std::vector<EquilibriumReport> all = sweep_report(scene::parse(atlas.header().scene, atlas.path().string()));
+  std::vector<EquilibriumReport> all = sweep_report(survey::scene_of(atlas));
   if (all.empty())
     throw core::InputError(
         fmt::format("{} has no sweep to draw: its scene leads to no equilibrium", atlas.path().string()));

@@ -13,6 +13,10 @@ std::shared_ptr<const systems::System> system_of(const scene::Scene& scene) {
   return scene::bound_system(scene.system);
 }
 
+scene::Scene scene_of(const archive::Archive& atlas) {
+  return scene::parse(atlas.header().scene, atlas.path().string(), {}, atlas.header().model);
+}
+
 systems::Scales scales_of(const archive::Header& header, const systems::System& system) {
   systems::Scales scales;
   const auto coordinates = static_cast<std::ptrdiff_t>(system.dimension());
@@ -28,7 +32,7 @@ systems::Scales scales_of(const archive::Header& header, const systems::System& 
 }
 
 std::shared_ptr<const systems::System> scaled_system_of(const archive::Archive& atlas) {
-  const auto system = system_of(scene::parse(atlas.header().scene, atlas.path().string()));
+  const auto system = system_of(scene_of(atlas));
   return systems::scaled(system, scales_of(atlas.header(), *system));
 }
 

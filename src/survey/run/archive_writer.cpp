@@ -56,6 +56,7 @@ archive::Header header_of(const scene::Scene& scene, const systems::System& syst
   archive::Header header;
   header.orbweaver_version = version();
   header.scene = scene.text;
+  header.model = scene.model;
   header.state_names = system.info().state_names;
   header.winding_names = system.winding_names();
   header.winding_coordinates = system.structure().angles;
@@ -223,8 +224,9 @@ Summary archive_survey(const core::Communicator& comm, const std::filesystem::pa
   });
   Found found = find_checkpoint(comm, state_folder(directory));
   if (!found.found) throw core::InputError(fmt::format("{} holds no survey with a checkpoint", directory.string()));
-  const std::string text = core::agreed(comm.get(), found.checkpoint.scene);
-  const scene::Scene scene = scene::parse(text, "the checkpoint's scene");
+  found.checkpoint.scene = core::agreed(comm.get(), std::move(found.checkpoint.scene));
+  found.checkpoint.model = core::agreed(comm.get(), std::move(found.checkpoint.model));
+  const scene::Scene scene = scene_of(found.checkpoint);
   const ScaledScene scaled(scene, scene::bound_system(scene.system));
   const auto& system = scaled.system();
   core::on_root(comm.get(), [&] { scaled.expect(found.checkpoint.scales); });

@@ -141,6 +141,7 @@ class Run {
       } else {
         if (!again) remove_unlisted(_folder, {});  // of a survey that had not come to a checkpoint
         _start.scene = _scene.text;
+        _start.model = _scene.model;
         _start.scales = _system->scales();
         _start.unfinished = std::move(sweeps);
         write_checkpoint(_folder, _start);

@@ -17,10 +17,9 @@ namespace orbweaver::survey {
 namespace {
 
 // Counts up with every change of what the files hold, payloads and states included.
-constexpr std::uint32_t file_version = 5;
-constexpr std::uint32_t without_stored_payloads = 4;  // otherwise the same
-constexpr archive::Seal checkpoint_seal{"ORBWCKP\x1a", file_version, without_stored_payloads};
-constexpr archive::Seal journal_seal{"ORBWJRN\x1a", file_version, without_stored_payloads};
+constexpr std::uint32_t file_version = 6;
+constexpr archive::Seal checkpoint_seal{"ORBWCKP\x1a", file_version};
+constexpr archive::Seal journal_seal{"ORBWJRN\x1a", file_version};
 
 struct Journal {
   static constexpr const char* payload_name = "journal";
@@ -84,6 +83,10 @@ std::vector<EndedTask> read_journal(const std::filesystem::path& folder, const J
     throw core::InputError(fmt::format("{}: it should list {} ended tasks and lists {}", (folder / file.name).string(),
                                        file.entries, entries.size()));
   return entries;
+}
+
+scene::Scene scene_of(const Checkpoint& checkpoint) {
+  return scene::parse(checkpoint.scene, "the checkpoint's scene", {}, checkpoint.model);
 }
 
 }  // namespace orbweaver::survey

@@ -8,6 +8,7 @@
 #include "orbweaver/archive/write/segment.hpp"
 #include "orbweaver/core/serialization.hpp"
 #include "orbweaver/queue/task.hpp"
+#include "orbweaver/scene/scene.hpp"
 #include "orbweaver/systems/scales.hpp"
 
 namespace orbweaver::survey {
@@ -50,6 +51,7 @@ struct Checkpoint {
   static constexpr const char* payload_name = "checkpoint";
   std::string orbweaver_version;
   std::string scene;
+  std::string model;                        ///< scene::Scene::model
   systems::Scales scales;                   ///< in which the tasks are told
   std::vector<std::string> earlier_scenes;  ///< before limits were widened, for which segments may have been written
   Stage stage = Stage::sweeps;
@@ -63,7 +65,7 @@ struct Checkpoint {
   static constexpr int wire_version = 1;
   template <class Archive>
   void serialize(Archive& archive, unsigned /*version*/) {
-    core::serialize_members(archive, orbweaver_version, scene, scales, earlier_scenes, stage, failures, segments,
+    core::serialize_members(archive, orbweaver_version, scene, model, scales, earlier_scenes, stage, failures, segments,
                             journals, voided, unfinished, left_out);
   }
 };
@@ -93,5 +95,8 @@ CheckpointMark write_checkpoint(const std::filesystem::path& folder, const Check
                                         const std::vector<EndedTask>& entries);
 /// Throws InputError, also if the file has other entries than listed.
 [[nodiscard]] std::vector<EndedTask> read_journal(const std::filesystem::path& folder, const JournalFile& file);
+
+/// The scene of a checkpoint. Throws InputError where this Orbweaver does not read it.
+[[nodiscard]] scene::Scene scene_of(const Checkpoint& checkpoint);
 
 }  // namespace orbweaver::survey

@@ -65,7 +65,7 @@ void require_whole(const std::filesystem::path& atlas) {
 
 DirectoryStatus status_of(const Checkpoint& checkpoint, const std::filesystem::path& directory,
                           const scene::Scene& scene) {
-  const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");
+  const scene::Scene before = scene_of(checkpoint);
   const std::string differing = refusal(before, scene);
   if (!differing.empty())
     throw core::InputError(
@@ -91,7 +91,7 @@ DirectoryStatus status_of(const std::filesystem::path& directory, const scene::S
   const std::filesystem::path atlas = core::atlas_in(directory);
   if (!std::filesystem::exists(atlas)) return holds_files(folder) ? DirectoryStatus::unfinished : DirectoryStatus::none;
   const archive::Archive archive(atlas);
-  if (archive.header().scene != scene.text)
+  if (archive.header().scene != scene.text || archive.header().model != scene.model)
     throw core::InputError(
         fmt::format("{} was made from another scene than this one: give another folder with -o, or move the "
                     "archive away",

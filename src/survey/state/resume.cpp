@@ -244,8 +244,7 @@ void remove_unlisted(const std::filesystem::path& folder, const Checkpoint& chec
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
-    if (is_listed_kind(name) && !listed.contains(name))
-      std::filesystem::remove(entry.path(), ignored);
+    if (is_listed_kind(name) && !listed.contains(name)) std::filesystem::remove(entry.path(), ignored);
   }
 }
 
@@ -310,7 +309,7 @@ std::string refusal(const scene::Scene& before, const scene::Scene& now) {
 
 bool begins_again(const scene::Scene& scene, const systems::Scales& scales, const std::filesystem::path& folder,
                   const Checkpoint& checkpoint) {
-  const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");
+  const scene::Scene before = scene_of(checkpoint);
   if (!refusal(before, scene).empty() || (widened_limits(before, scene) & parameter_limited) == 0) return false;
   systems::Scales measured = checkpoint.scales;
   measured.parameters = scales.parameters;
@@ -336,7 +335,7 @@ bool begins_again(const scene::Scene& scene, const systems::Scales& scales, cons
 
 void continue_with(const scene::Scene& scene, const std::filesystem::path& folder, Checkpoint& checkpoint,
                    const std::function<void(const EndedTask&)>& take) {
-  const scene::Scene before = scene::parse(checkpoint.scene, "the checkpoint's scene");
+  const scene::Scene before = scene_of(checkpoint);
   const std::string differing = refusal(before, scene);
   if (!differing.empty())
     throw core::InputError(
@@ -357,6 +356,7 @@ void continue_with(const scene::Scene& scene, const std::filesystem::path& folde
   if (scene.text != checkpoint.scene) {
     checkpoint.earlier_scenes.push_back(std::exchange(checkpoint.scene, scene.text));
   }
+  checkpoint.model = scene.model;
   checkpoint.stage = std::min(checkpoint.stage, Stage::families);
 }
 

@@ -62,7 +62,7 @@ VerifiedAtlas::VerifiedAtlas(const std::filesystem::path& path) : VerifiedAtlas(
 
 VerifiedAtlas::VerifiedAtlas(archive::Archive&& open)
     : _archive(std::make_unique<archive::Archive>(std::move(open))),
-      _scene(scene::parse(_archive->header().scene, fmt::format("the scene in {}", _archive->path().string()))),
+      _scene(scene_of(*_archive)),
       _system(system_of(_archive->header(), _scene)),
       _tree(std::make_unique<AtlasTree>(*_archive, witness_tolerance)) {
   for (const TreeFamily& family : _tree->families)

@@ -163,10 +163,16 @@ struct FindingRecord {
   std::string text;
 };
 
+/// The row of /model.
+struct ModelRecord {
+  std::string text;
+};
+
 /// What stands on the root group and fixes the width of vector columns.
 struct Header {
   std::string orbweaver_version;
   std::string scene;  ///< the YAML text
+  std::string model;  ///< the model's text (docs/models.md), in /model; empty: it has none, or the file is older
   std::vector<std::string> state_names;
   std::vector<std::string> winding_names;
   std::vector<int> winding_coordinates;  ///< index of each one's coordinate; empty before format_minor 11

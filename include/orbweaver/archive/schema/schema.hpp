@@ -16,7 +16,7 @@ inline constexpr int format_version = 1;
 /// version are read. 1: /findings, system, effects, parameters, scales. 2: checksums. 3: what certificates say. 4:
 /// /sections is filled. 5: the parameter at crossings and findings. 6: /loci. 7: /equilibria. 8:
 /// `log_volume` of /orbits. 9: the attributes `unit` and `meaning` of datasets. 10:
-/// `birth_arclength` of /families. 11: the errors of places of /crossings, winding_coordinates.
+/// `birth_arclength` of /families. 11: the errors of places of /crossings, winding_coordinates, /model.
 inline constexpr int format_minor = 11;
 /// The first with checksums.
 inline constexpr int checksums_since = 2;
@@ -34,6 +34,9 @@ inline constexpr int births_since = 10;
 inline constexpr int place_errors_since = 11;
 /// The first that says which coordinates the winding numbers belong to.
 inline constexpr int winding_coordinates_since = 11;
+
+/// Bytes of a model's text.
+inline constexpr std::size_t longest_model = 1'000'000;
 
 enum class ColumnType { integer, real, text };
 
@@ -81,6 +84,7 @@ struct TableSpec {
 [[nodiscard]] TableSpec loci_spec(const Header& header);
 [[nodiscard]] TableSpec equilibria_spec(const Header& header);
 [[nodiscard]] TableSpec findings_spec();
+[[nodiscard]] TableSpec model_spec();
 
 /// The tables of a segment: orbits and sections name their family by its key, since rows are not numbered yet.
 [[nodiscard]] TableSpec segment_orbits_spec(const Header& header);

@@ -13,6 +13,9 @@ namespace orbweaver::survey {
 /// The system of a scene, in the units of its parameters.
 [[nodiscard]] std::shared_ptr<const systems::System> system_of(const scene::Scene& scene);
 
+/// The scene of an archive, with the model that it holds. Throws InputError where this Orbweaver does not read it.
+[[nodiscard]] scene::Scene scene_of(const archive::Archive& atlas);
+
 /// The system of the archive's scene, told in the scales of the survey that wrote it: all 1 in an archive from before
 /// there were any. Throws InputError where this Orbweaver does not read the scene.
 [[nodiscard]] std::shared_ptr<const systems::System> scaled_system_of(const archive::Archive& atlas);
