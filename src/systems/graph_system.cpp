@@ -7,7 +7,6 @@
 
 #include "linearized_formulas.hpp"
 #include "orbweaver/core/error.hpp"
-#include "orbweaver/model/block_program.hpp"
 #include "orbweaver/model/derivatives.hpp"
 #include "reduced_structure.hpp"
 
@@ -334,19 +333,25 @@ double GraphSystem::one(Kind kind, int number, std::span<const double> z) const 
 
 void GraphSystem::run(Kind kind, std::size_t number, std::size_t nodes, std::span<const double* const> in,
                       std::span<double* const> out) const {
-  _programs->program(kind, number).run(scalars_of(kind, number), nodes, in, out);
+  const Ready& ready = this->ready(kind, number);
+  ready.program->run(ready.scalars, nodes, in, out);
 }
 
 void GraphSystem::run_one(Kind kind, std::size_t number, const double* z,
                           std::initializer_list<std::span<double>> out) const {
-  _programs->program(kind, number).run_one(scalars_of(kind, number), {z, size()}, out);
+  const Ready& ready = this->ready(kind, number);
+  ready.program->run_one(ready.scalars, {z, size()}, out);
 }
 
-const std::vector<double>& GraphSystem::scalars_of(Kind kind, std::size_t number) const {
-  std::vector<std::vector<double>>& own = _scalars_of[kind];
+const GraphSystem::Ready& GraphSystem::ready(Kind kind, std::size_t number) const {
+  std::vector<Ready>& own = _ready[kind];
   if (own.size() <= number) own.resize(number + 1);
-  if (own[number].empty()) own[number] = _programs->program(kind, number).scalars(_values);
-  return own[number];
+  Ready& ready = own[number];
+  if (ready.program == nullptr) {
+    ready.program = &_programs->program(kind, number);
+    ready.scalars = ready.program->scalars(_values);
+  }
+  return ready;
 }
 
 std::shared_ptr<const GraphSystem> graph_system(const std::shared_ptr<const System>& system) {
