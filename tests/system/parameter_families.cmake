@@ -1,4 +1,4 @@
-# Families in a parameter: the same archive on 1, 2 and 3 ranks, which is verified, and after kills.
+# Families in a parameter: the same archive on 1, 2 and 3 ranks and with vectors of any width, which is verified, and after kills.
 foreach(name IN ITEMS van_der_pol lorenz duffing damped_driven_double_pendulum)
   set(short_form "")
   if(name STREQUAL van_der_pol)  # the whole, to mu = 1000, is below
@@ -6,7 +6,8 @@ foreach(name IN ITEMS van_der_pol lorenz duffing damped_driven_double_pendulum)
   elseif(name STREQUAL damped_driven_double_pendulum)  # the first doubling, and the torus point of the doubled family
     set(short_form --set survey.depth=1 --set "limits.parameter=[1.4115,1.4243]")
   endif()
-  same_on_ranks(${name} RANKS 1 2 3 SCENE "${PROJECT_SOURCE_DIR}/drivers/scenes/${name}.yaml" OPTIONS ${short_form})
+  same_on_ranks(${name} RANKS 1 2 3 VECTORS 128 256 SCENE "${PROJECT_SOURCE_DIR}/drivers/scenes/${name}.yaml"
+    OPTIONS ${short_form})
   system_test(${name}.verify 2 0 "OUT=section points|: all hold" verify "${runs}/system.${name}.ranks1/out/atlas.h5")
   set_tests_properties(system.${name}.verify PROPERTIES FIXTURES_REQUIRED "${name}1")
 endforeach()

@@ -1,8 +1,9 @@
 # same_on_ranks(<name> RANKS <ranks ...> SCENE <scene> [SAYS <text of run_program.cmake>] [PROGRESS <the same of stderr>]
-#   [OPTIONS <options of survey ...>]): the survey system.<name>.ranks<n> on each number of ranks, which sets up the fixture
-# <name><n>, and system.<name>.same_archive: their archives are the same.
+#   [VECTORS <bits ...>] [OPTIONS <options of survey ...>]): the survey system.<name>.ranks<n> on each number of ranks, which sets up the fixture
+# <name><n>, the same on one rank with fields computed in vectors of so many bits, and system.<name>.same_archive: all
+# archives are the same.
 function(same_on_ranks name)
-  cmake_parse_arguments(PARSE_ARGV 1 given "" "SCENE;SAYS;PROGRESS" "RANKS;OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 given "" "SCENE;SAYS;PROGRESS" "RANKS;VECTORS;OPTIONS")
   set(says "0 contradictions|, 0 failed|archive: ")
   if(given_SAYS)
     string(PREPEND says "${given_SAYS}|")
@@ -20,6 +21,15 @@ function(same_on_ranks name)
     set_tests_properties(system.${name}.ranks${ranks} PROPERTIES FIXTURES_SETUP "${name}${ranks}")
     list(APPEND archives "${folder}/atlas.h5")
     list(APPEND required "${name}${ranks}")
+  endforeach()
+  foreach(bits IN LISTS given_VECTORS)
+    set(folder "${runs}/system.${name}.vectors${bits}/out")
+    system_test(${name}.vectors${bits} 1 0 "OUT=${says}" "FRESH=${folder}" "HAS=${folder}/atlas.h5"
+      survey "${given_SCENE}" -o out ${given_OPTIONS})
+    set_tests_properties(system.${name}.vectors${bits} PROPERTIES FIXTURES_SETUP "${name}_vectors${bits}")
+    set_property(TEST system.${name}.vectors${bits} APPEND PROPERTY ENVIRONMENT "ORBWEAVER_VECTOR_BITS=${bits}")
+    list(APPEND archives "${folder}/atlas.h5")
+    list(APPEND required "${name}_vectors${bits}")
   endforeach()
   orbweaver_add_ctest(system.${name}.same_archive 1 system 60 $<TARGET_FILE:compare_archives> ${archives})
   set_tests_properties(system.${name}.same_archive PROPERTIES FIXTURES_REQUIRED "${required}")
