@@ -1,5 +1,5 @@
-// An archive whose formulas are missing, as of a system that came from a plugin: it is opened, shown, drawn and compared
-// by its modes; what needs the field says so.
+// An archive whose formulas are missing, as of a system that came from a plugin: it is opened, shown, drawn and
+// compared by its modes; what needs the field says so.
 #include <cmath>
 #include <string>
 

@@ -13,8 +13,8 @@
 namespace orbweaver::systems {
 
 using SystemMaker = std::shared_ptr<const System> (*)(const Bound& bound);
-/// Adds a model that a program has in C++ (systems/recorded_model.hpp); a later one of that name takes its place. Throws
-/// core::InputError where a name or a meaning cannot be shown, or a system of the program has its name.
+/// Adds a model that a program has in C++ (systems/recorded_model.hpp); a later one of that name takes its place.
+/// Throws core::InputError where a name or a meaning cannot be shown, or a system of the program has its name.
 void add_recorded(ModelInfo info, SystemMaker make);
 
 /// Names of all systems: the program's, and those added.

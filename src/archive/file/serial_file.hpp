@@ -40,8 +40,8 @@ class SerialFile {
 
   /// Whether the file has this table: one that older versions did not write.
   [[nodiscard]] bool has_table(const std::string& name) const;
-  /// Reads /model, where the file has one, into the header. What is wrong with its text, for `expect`; empty: it gives the
-  /// hash that stands on the root group.
+  /// Reads /model, where the file has one, into the header. What is wrong with its text, for `expect`; empty: it
+  /// gives the hash that stands on the root group.
   [[nodiscard]] std::string read_model();
   /// Checks that all columns exist with the right type and shape and equally many rows; fills in the text widths and
   /// returns the number of rows. Only columns that were checked can be read.

@@ -35,8 +35,8 @@ struct OrbitBeside {
 /// Holds loops of one atlas against families of the other.
 class LoopCheck {
  public:
-  /// `system`, in whose scales loops are compared: null where its formulas are missing; then loops are compared by their
-  /// modes alone, and only those of orbits that both atlases have at one place.
+  /// `system`, in whose scales loops are compared: null where its formulas are missing; then loops are compared by
+  /// their modes alone, and only those of orbits that both atlases have at one place.
   explicit LoopCheck(std::shared_ptr<const systems::System> system) : _system(std::move(system)) {}
 
   [[nodiscard]] bool can_compare() const { return _system != nullptr; }
