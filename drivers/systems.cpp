@@ -8,6 +8,7 @@
 
 #include "command.hpp"
 #include "common_options.hpp"
+#include "failure.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/styled.hpp"
 #include "orbweaver/systems/registry.hpp"
