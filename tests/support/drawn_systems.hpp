@@ -18,7 +18,7 @@ struct DrawnSystem {
   std::vector<std::string> settings;
 };
 
-/// Draws wells, chains of coupled oscillators, networks of reactions and driven oscillators in turn. The same seed gives
+/// Draws wells, chains of oscillators, networks of reactions and driven oscillators in turn. The same seed gives
 /// the same systems, the first of a longer list among them.
 class SystemDrawing {
  public:
