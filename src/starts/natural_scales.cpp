@@ -124,7 +124,8 @@ class LocalScales {
 
   [[nodiscard]] MatrixXd in_scales(MatrixXd matrix) const {
     for (Index i = 0; i < matrix.rows(); ++i)
-      for (Index l = 0; l < matrix.cols(); ++l) matrix(i, l) *= std::exp2(_log(l) - _log(i));
+      for (Index l = 0; l < matrix.cols(); ++l)
+        if (matrix(i, l) != 0.0) matrix(i, l) *= std::exp2(_log(l) - _log(i));
     return matrix;
   }
 
@@ -166,9 +167,8 @@ class LocalScales {
         double column = 0.0;
         for (Index i = 0; i < d; ++i)
           for (Index l = 0; l < d; ++l) {
-            const double weight = weights(i, l) * std::exp2(2.0 * (_log(l) - _log(i)));
-            if (group(i) == first && group(l) != first) row += weight;
-            if (group(i) != first && group(l) == first) column += weight;
+            if (weights(i, l) == 0.0 || (group(i) == first) == (group(l) == first)) continue;
+            (group(i) == first ? row : column) += weights(i, l) * std::exp2(2.0 * (_log(l) - _log(i)));
           }
         if (row == 0.0 || column == 0.0) continue;
         const double change = 0.25 * (std::log2(row) - std::log2(column));
