@@ -1,5 +1,7 @@
 #include "fuzz/kinds.hpp"
+#include "orbweaver/core/text.hpp"
 #include "orbweaver/document/document.hpp"
+#include "orbweaver/systems/model/checks.hpp"
 #include "orbweaver/systems/registry.hpp"
 #include "orbweaver/systems/text/system_of.hpp"
 
