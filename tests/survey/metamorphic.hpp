@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "support/moved_system.hpp"
 #include "support/turned_system.hpp"
 #include "survey/same_tree.hpp"
 
@@ -179,8 +180,8 @@ class Metamorphic : public testing::TestWithParam<std::size_t> {
   }
   static std::shared_ptr<const systems::System> turned(const scene::Scene& scene, const Eigen::MatrixXd& turn,
                                                        double time = 1.0, double energy = 1.0) {
-    return std::make_shared<const TurnedSystem>(
-        systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects), turn, time, energy);
+    return moved_system(systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects),
+                        {turn, Eigen::VectorXd::Zero(turn.rows())}, time, energy);
   }
   core::Communicator comm;
 };

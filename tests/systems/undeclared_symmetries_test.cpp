@@ -7,7 +7,7 @@
 #include "orbweaver/systems/undeclared_turns.hpp"
 #include "support/driven_oscillator.hpp"
 #include "support/magnetic_well.hpp"
-#include "support/translated_system.hpp"
+#include "support/moved_system.hpp"
 
 namespace orbweaver::systems::undeclared_symmetries_test {
 namespace {
@@ -34,8 +34,8 @@ TEST(UndeclaredSymmetries, AreFound) {
 
 TEST(UndeclaredSymmetries, AreFoundAboutOtherPoints) {
   const Eigen::Vector4d offset(2.0, 0.0, -1.0, 0.5);
-  const test::TranslatedSystem moved(test::magnetic_well({{"b", 0.0}}), offset);
-  EXPECT_THAT(undeclared_symmetries(moved, {{5.0, 5.0, 5.0, 5.0}, {2.0, 0.0, -1.0, 0.5}}),
+  const auto moved = test::moved_system(test::magnetic_well({{"b", 0.0}}), offset);
+  EXPECT_THAT(undeclared_symmetries(*moved, {{5.0, 5.0, 5.0, 5.0}, {2.0, 0.0, -1.0, 0.5}}),
               ElementsAre("the reversor (x, y, px, py) -> (x, y, -2 - px, 1 - py)"));
 }
 
@@ -67,9 +67,9 @@ TEST(UndeclaredSymmetries, AreTurnsAboutAnAxis) {
   for (const char* cubic : {"a1", "a2", "a3", "a4"}) well[cubic] = 0.0;
   EXPECT_THAT(undeclared_turns(*test::magnetic_well(well), origin), ElementsAre("x", "y", "px", "py"));
   const Eigen::Vector4d offset(2.0, 0.0, -1.0, 0.5);
-  const test::TranslatedSystem moved(test::magnetic_well(well), offset);
-  EXPECT_THAT(undeclared_turns(moved, origin), IsEmpty());
-  EXPECT_THAT(undeclared_turns(moved, {{2.0, 0.0, -1.0, 0.5}}), ElementsAre("x", "y", "px", "py"));
+  const auto moved = test::moved_system(test::magnetic_well(well), offset);
+  EXPECT_THAT(undeclared_turns(*moved, origin), IsEmpty());
+  EXPECT_THAT(undeclared_turns(*moved, {{2.0, 0.0, -1.0, 0.5}}), ElementsAre("x", "y", "px", "py"));
   for (const char* name : {"k1", "a1", "c", "e"}) {
     std::map<std::string, double> uneven = well;
     uneven[name] += 1e-6;
