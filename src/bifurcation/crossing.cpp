@@ -152,7 +152,6 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   constexpr double widest = 1e-10;  // what |index - value| <= |dk/ds| 1e-10 allows
   const double absolute = std::min(tolerance * (1.0 + std::max(std::abs(from), std::abs(to))), widest);
   std::optional<numerics::Located> located;
-  int sense_of_fold = 0;
   Event parted = event;
   parted.is_parted = true;
   EventFunction exact(system, family, parted, {from, to});
@@ -186,12 +185,8 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
       if (uncertain > absolute) sharpen(sharpened(exact, {from, to}, located->position, uncertain, absolute));
     }
   } else {
-    const std::optional<Turn> turned = turn(system, family, event, function, {from, to}, absolute, why);
-    if (!turned && why.reason == NotLocated::Reason::unclear_fold) return std::nullopt;
-    if (turned) {
-      located = turned->located;
-      sense_of_fold = turned->sense;
-    }
+    located = turn(system, family, event, function, {from, to}, absolute, why);
+    if (!located && why.reason == NotLocated::Reason::unclear_fold) return std::nullopt;
   }
   if (!located) {
     const double at_from = function(from);
@@ -228,7 +223,7 @@ std::optional<Crossing> locate(const systems::System& system, continuation::Fami
   }
   const Enclosure around = event.kind == Event::Kind::test_function
                                ? enclosed(located->position)
-                               : enclosure_of_fold(function, located->position, sense_of_fold, {from, to}, absolute);
+                               : enclosure_of_fold(function, located->position, {from, to}, absolute);
   crossing->place_error = place_error(*asked, family, located->position, function.seen().at(located->position), around);
   if (event.kind == Event::Kind::test_function && has_sector(event.function.kind) && event.function.sector.q == 1)
     crossing->point.tangent = settled_direction(family, crossing->point, {from, to});

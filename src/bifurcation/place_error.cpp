@@ -21,45 +21,29 @@ struct SideOfZero {
   bool is_told;
 };
 
-/// What lies between a place and an end of its bracket.
-struct Side {
-  double place;
-  double end;
-  std::vector<double> distances;  ///< rising, where the function is known; with the end's
-
-  Side(const std::vector<double>& asked, double of, double up_to) : place(of), end(up_to) {
-    distances.push_back(std::abs(end - place));
-    for (const double position : asked)
-      if (direction() * (position - place) > 0.0 && direction() * (end - position) > 0.0)
-        distances.push_back(direction() * (position - place));
-    std::sort(distances.begin(), distances.end());
-  }
-  [[nodiscard]] double direction() const { return end > place ? 1.0 : -1.0; }
+SideOfZero side_of_zero(const BoundedFunction& function, const std::vector<double>& asked, double place, double end,
+                        double least) {
+  const double direction = end > place ? 1.0 : -1.0;
+  SideOfZero told{std::abs(end - place), false};
   // Rounding may bring the whole distance beyond the end, where nothing is known.
-  [[nodiscard]] double at(double distance) const {
-    const double position = place + direction() * distance;
-    return direction() > 0.0 ? std::min(position, end) : std::max(position, end);
-  }
-};
-
-/// The function's outermost that is told; 0: none is.
-int outer_sign(const BoundedFunction& function, const Side& side) {
-  int sign = 0;
-  for (std::size_t n = side.distances.size(); n > 0 && sign == 0; --n)
-    sign = function(side.at(side.distances[n - 1])).sign();
-  return sign;
-}
-
-/// The nearest place where the function has this sign.
-SideOfZero side_of_zero(const BoundedFunction& function, const Side& side, int sign, double least) {
-  SideOfZero told{side.distances.back(), false};
-  if (sign == 0) return told;
-  const double error = function(side.place).error;
+  const auto position_at = [&](double distance) {
+    const double position = place + direction * distance;
+    return direction > 0.0 ? std::min(position, end) : std::max(position, end);
+  };
+  const double error = function(place).error;
   double share = 1.0;  // the error's of the value there
   double untold = 0.0;
+  std::vector<double> distances{told.distance};
+  for (const double position : asked)
+    if (direction * (position - place) > 0.0 && direction * (end - position) > 0.0)
+      distances.push_back(direction * (position - place));
+  std::sort(distances.begin(), distances.end());
+  int sign = 0;
+  for (std::size_t n = distances.size(); n > 0 && sign == 0; --n) sign = function(position_at(distances[n - 1])).sign();
+  if (sign == 0) return told;
   // Whether the sign is told so far from the place.
   const auto ask = [&](double distance) {
-    const Reading reading = function(side.at(distance));
+    const Reading reading = function(position_at(distance));
     const bool is_told = reading.sign() == sign;
     if (is_told) {
       told = {distance, true};
@@ -67,7 +51,7 @@ SideOfZero side_of_zero(const BoundedFunction& function, const Side& side, int s
     }
     return is_told;
   };
-  for (const double distance : side.distances) {
+  for (const double distance : distances) {
     if (ask(distance)) break;
     untold = distance;
   }
@@ -77,10 +61,6 @@ SideOfZero side_of_zero(const BoundedFunction& function, const Side& side, int s
        next = std::sqrt(untold * told.distance))
     if (next >= told.distance || !ask(next)) untold = next;
   return told;
-}
-
-Enclosure enclosed(const SideOfZero& before, const SideOfZero& behind) {
-  return {before.distance, behind.distance, before.is_told && behind.is_told};
 }
 
 /// Of what turns at a fold the slope has no bound: what it differs by from a straight line so near to the place. What
@@ -117,26 +97,30 @@ double most_change(const std::vector<double>& distances, const std::vector<doubl
 
 Enclosure enclosure_of_zero(const BoundedFunction& function, const std::vector<double>& asked, double place,
                             double from, double to, double least) {
-  const Side before(asked, place, from), behind(asked, place, to);
-  return enclosed(side_of_zero(function, before, outer_sign(function, before), least),
-                  side_of_zero(function, behind, outer_sign(function, behind), least));
+  const SideOfZero before = side_of_zero(function, asked, place, from, least);
+  const SideOfZero behind = side_of_zero(function, asked, place, to, least);
+  return {before.distance, behind.distance, before.is_told && behind.is_told};
 }
 
-Enclosure enclosure_of_fold(EventFunction& slope, double place, int sense, const Interval& within, double least) {
+Enclosure enclosure_of_fold(EventFunction& slope, double place, const Interval& within, double least) {
   const BoundedFunction slope_at = [&](double position) { return slope.reading(position); };
   const double of_slope = scatter_of(slope_at, place, within);
-  const Side before(slope.asked(), place, within.from), behind(slope.asked(), place, within.to);
-  const BoundedFunction bounded = [&](double position) { return Reading{slope_at(position).value, of_slope}; };
-  const Enclosure found =
-      enclosed(side_of_zero(bounded, before, sense, least), side_of_zero(bounded, behind, -sense, least));
+  const Enclosure found = enclosure_of_zero(
+      [&](double position) {
+        return Reading{slope_at(position).value, of_slope};
+      },
+      slope.asked(), place, within.from, within.to, least);
   if (found.is_told) return found;
   // Located as an extremum, where slopes do not tell.
   const double there = slope.turning_at(place);
   const BoundedFunction change = [&](double position) { return Reading{slope.turning_at(position) - there, 0.0}; };
   const double rounding =
       std::max(scatter_of(change, place, within), std::numeric_limits<double>::epsilon() * std::abs(there));
-  const BoundedFunction rounded = [&](double position) { return Reading{change(position).value, rounding}; };
-  return enclosed(side_of_zero(rounded, before, -sense, least), side_of_zero(rounded, behind, -sense, least));
+  return enclosure_of_zero(
+      [&](double position) {
+        return Reading{change(position).value, rounding};
+      },
+      slope.asked(), place, within.from, within.to, least);
 }
 
 PlaceError place_error(const EventFunction& function, const continuation::FamilyCurve& family, double place,

@@ -5,10 +5,8 @@
 
 namespace orbweaver::bifurcation {
 
-/// Of a fold that was located at `place`, of a sense (`Turn`): by its slope's scatter there; where that does not tell,
-/// by what turns. Another fold may lie between it and the ends.
-[[nodiscard]] Enclosure enclosure_of_fold(EventFunction& slope, double place, int sense, const Interval& within,
-                                          double least);
+/// Of a fold that was located at `place`: by its slope's scatter there; where that does not tell, by what turns.
+[[nodiscard]] Enclosure enclosure_of_fold(EventFunction& slope, double place, const Interval& within, double least);
 
 /// What an enclosure along the family means for its orbits, by those that the function was asked at. `there`: of the
 /// orbit at the place.

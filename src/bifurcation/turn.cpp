@@ -57,8 +57,9 @@ std::optional<Interval> turning_part(EventFunction& slope_at, const continuation
 
 /// The least or largest period or energy between two positions, if it lies within; none where it stands out of what
 /// the quantity scatters by rounding so little that it may be none: `why` then says so. `sense`: of `sense_of_turn`.
-std::optional<Turn> extremum(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
-                             double from, double to, int sense, double tolerance, NotLocated& why) {
+std::optional<numerics::Located> extremum(const systems::System& system, continuation::FamilyCurve& family,
+                                          const Event& event, double from, double to, int sense, double tolerance,
+                                          NotLocated& why) {
   const auto of = [&](const loop::Loop& loop) { return turning(system, event.kind, loop); };
   const auto quantity = [&](double position) {
     if (const std::optional<continuation::CurvePoint> point = family.at(position)) return of(point->loop);
@@ -82,7 +83,7 @@ std::optional<Turn> extremum(const systems::System& system, continuation::Family
     }
     // Below 0 where it turns again on the way to an end.
     const double rise = std::min(sign * (at_from - least), sign * (at_to - least));
-    if (std::abs(rise) > clear_rise * scatter) return Turn{*found, sign > 0.0 ? -1 : 1};
+    if (std::abs(rise) > clear_rise * scatter) return found;
     why = {.reason = NotLocated::Reason::unclear_fold, .at_from = rise, .at_to = scatter, .position = found->position};
     if (const auto point = family.at(found->position)) why.period = point->loop.period;
   }
@@ -100,26 +101,24 @@ std::optional<numerics::Located> root_of_slope(EventFunction& slope_at, const In
 
 }  // namespace
 
-std::optional<Turn> turn(const systems::System& system, continuation::FamilyCurve& family, const Event& event,
-                         EventFunction& slope_at, const Interval& within, double tolerance, NotLocated& why) {
+std::optional<numerics::Located> turn(const systems::System& system, continuation::FamilyCurve& family,
+                                      const Event& event, EventFunction& slope_at, const Interval& within,
+                                      double tolerance, NotLocated& why) {
   why = {};
-  if (const auto located = root_of_slope(slope_at, within, tolerance))
-    return Turn{*located, slope_at(within.to) > 0.0 ? -1 : 1};
+  if (auto located = root_of_slope(slope_at, within, tolerance)) return located;
   const int sense = sense_of_turn(system, family, event, within);
   if (const auto part = turning_part(slope_at, family, within, sense))
-    if (const auto located = root_of_slope(slope_at, *part, tolerance)) return Turn{*located, sense};
-  const auto most = extremum(system, family, event, within.from, within.to, sense, tolerance, why);
-  if (!most) return std::nullopt;
-  const double place = most->located.position;
+    if (auto located = root_of_slope(slope_at, *part, tolerance)) return located;
+  const auto located = extremum(system, family, event, within.from, within.to, sense, tolerance, why);
+  if (!located) return located;
   const double margin = off_ends * (within.to - within.from);
-  const auto exact = root_of_slope(slope_at, {place - margin, place + margin}, tolerance);
-  const auto there = family.at(place);
-  const auto beside = exact ? family.at(exact->position) : std::nullopt;
-  if (!there || !beside) return most;
-  const double value = turning(system, event.kind, there->loop);
+  const auto exact = root_of_slope(slope_at, {located->position - margin, located->position + margin}, tolerance);
+  const auto most = family.at(located->position);
+  const auto there = exact ? family.at(exact->position) : std::nullopt;
+  if (!most || !there) return located;
+  const double value = turning(system, event.kind, most->loop);
   const double rounding = as_extreme * std::numeric_limits<double>::epsilon() * std::abs(value);
-  const bool is_as_extreme = std::abs(turning(system, event.kind, beside->loop) - value) <= rounding;
-  return is_as_extreme ? Turn{*exact, most->sense} : *most;
+  return std::abs(turning(system, event.kind, there->loop) - value) <= rounding ? exact : located;
 }
 
 }  // namespace orbweaver::bifurcation
