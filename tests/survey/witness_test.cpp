@@ -288,17 +288,6 @@ TEST_F(WitnessOf, PlacesThatAreKnownWorseThanTheScenesTolerance) {
   EXPECT_THAT(rows[0].text, HasSubstr("2.0e-06 in E"));
 }
 
-TEST_F(WitnessOf, PlacesOfFoldsThatAreKnownWorse) {
-  if (world->is_root()) {
-    records.crossings[1].kind = archive::CrossingKind::fold_energy;
-    records.crossings[1].place_error_energy = 2e-6;
-  }
-  const std::vector<Found> rows = found();
-  if (world->is_root()) {
-    EXPECT_THAT(rows, Contains(finding("undecided", "open-place")));
-  }
-}
-
 // A bound that is wider than all values on the unit circle is no number to tell.
 TEST_F(WitnessOf, ABoundThatSaysNothingIsSaidInWords) {
   for (const auto& [error, text] : {std::pair{6.2e172, "a stability index is not known:"},

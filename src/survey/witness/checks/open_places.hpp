@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "orbweaver/archive/schema/crossing_kind.hpp"
 #include "orbweaver/continuation/orbit.hpp"
 #include "witness/check.hpp"
 
@@ -19,6 +20,8 @@ class OpenPlaces final : public Check {
     std::vector<Finding> found;
     const double tolerance = std::fmax(evidence.scene.continuation.tolerance, continuation::same_orbit_tolerance);
     for (std::size_t row = 0; row < evidence.tree.crossings.size(); ++row) {
+      // What turns at a fold has no bound of its own, only a scatter (bifurcation/place_error.hpp).
+      if (archive::is_fold(evidence.tree.atlas.crossing_kinds()[row])) continue;
       const TreeCrossing& crossing = evidence.tree.crossings[row];
       const double in_period = crossing.place_error_period / crossing.period;
       const double in_level = crossing.place_error_level / crossing.level_scale;
