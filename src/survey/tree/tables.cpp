@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -19,31 +18,28 @@ namespace orbweaver::survey {
 
 namespace {
 
-/// A fold shows twice: as an extremum and as a zero of the test function of q = 1. The first by key stays, at the place
-/// that is known better.
+/// A fold shows twice: as an extremum and as a zero of the test function of q = 1. The first by key stays.
 class FoldsOnce {
  public:
-  /// The row of a fold that has been: of the same kind on the same family with the same value, no farther along it than
-  /// the orbits between which both were located, on curves through other orbits. None of a new one, which has `next`.
-  std::optional<std::size_t> known(const LocateOutcome& crossing, double arclength, std::size_t next) {
-    if (!is_fold(*crossing.kind)) return std::nullopt;
+  /// False for a fold that has been: of the same kind on the same family with the same value, no farther along it than
+  /// the orbits between which both were located, on curves through other orbits.
+  bool is_new(const LocateOutcome& crossing, double arclength) {
+    if (!is_fold(*crossing.kind)) return true;
     const double value = *crossing.kind == archive::CrossingKind::fold_period ? crossing.period : crossing.level();
     std::multimap<double, Place>& folds = _folds[{crossing.lineage.family, *crossing.kind}];
     const double beside = same_value * (1.0 + std::abs(value));
-    const auto end = folds.upper_bound(value + beside);
-    const auto known = std::find_if(folds.lower_bound(value - beside), end, [&](const auto& fold) {
-      return std::abs(fold.second.arclength - arclength) <= std::max(fold.second.within, crossing.within);
-    });
-    if (known != end) return known->second.row;
-    folds.emplace(value, Place{arclength, crossing.within, next});
-    return std::nullopt;
+    const bool is_known =
+        std::any_of(folds.lower_bound(value - beside), folds.upper_bound(value + beside), [&](const auto& fold) {
+          return std::abs(fold.second.arclength - arclength) <= std::max(fold.second.within, crossing.within);
+        });
+    if (!is_known) folds.emplace(value, Place{arclength, crossing.within});
+    return !is_known;
   }
 
  private:
   struct Place {
     double arclength;
     double within;
-    std::size_t row;
   };
   /// The value at a fold is known to the square of its place, which is located to 1e-10 and seldom open by more than
   /// 1e-5. Not measured.
@@ -51,33 +47,28 @@ class FoldsOnce {
   std::map<std::pair<std::string, archive::CrossingKind>, std::multimap<double, Place>> _folds;  // by family and kind
 };
 
-void set_place(archive::CrossingRecord& row, const LocateOutcome& crossing, double arclength, const Units& units) {
-  row.arclength = arclength;
-  row.period = crossing.period * units.time;
-  row.energy = crossing.energy * units.energy();
-  row.state = crossing.state;
-  for (std::size_t i = 0; i < row.state.size(); ++i) row.state[i] *= units.coordinate(i);
-  row.place_error = crossing.place_error.arclength;
-  row.place_error_period = crossing.place_error.period * units.time;
-  row.place_error_energy = crossing.place_error.energy * units.energy();
-  if (!units.in_parameter()) return;
-  row.parameter = crossing.parameter * units.parameter(0);
-  row.place_error_parameter = crossing.place_error.parameter * units.parameter(0);
-}
-
 archive::CrossingRecord row_of(const LocateOutcome& crossing, double arclength, const Units& units) {
   archive::CrossingRecord row;
   row.family_key = crossing.lineage.family;
-  set_place(row, crossing, arclength, units);
+  row.arclength = arclength;
+  row.period = crossing.period * units.time;
+  row.energy = crossing.energy * units.energy();
+  if (units.in_parameter()) row.parameter = crossing.parameter * units.parameter(0);
   row.kind = *crossing.kind;
   row.multiplicity = crossing.multiplicity;
   row.kernel_dimension = crossing.kernel_dimension;
   row.residual = crossing.residual;
+  row.state = crossing.state;
+  for (std::size_t i = 0; i < row.state.size(); ++i) row.state[i] *= units.coordinate(i);
   row.sector_j = crossing.j;
   row.sector_q = crossing.q;
   row.fundamental_order = crossing.fundamental_order;
   row.test_value = crossing.test_value;
   row.kernel_residual = crossing.kernel_singular_value;
+  row.place_error = crossing.place_error.arclength;
+  row.place_error_period = crossing.place_error.period * units.time;
+  row.place_error_energy = crossing.place_error.energy * units.energy();
+  if (units.in_parameter()) row.place_error_parameter = crossing.place_error.parameter * units.parameter(0);
   return row;
 }
 
@@ -137,14 +128,9 @@ std::map<std::string, int> add_crossings(const std::vector<Family>& families,
   FoldsOnce folds;
   for (const LocateOutcome* crossing : crossings) {
     const double arclength = arclengths.of(*crossing);
-    std::vector<archive::CrossingRecord>& table = tables.tables.crossings;
-    if (const auto row = folds.known(*crossing, arclength, table.size())) {
-      if (crossing->place_error.arclength < table[*row].place_error)
-        set_place(table[*row], *crossing, arclength, units);
-      continue;
-    }
-    rows[crossing->key] = static_cast<int>(table.size());
-    table.push_back(row_of(*crossing, arclength, units));
+    if (!folds.is_new(*crossing, arclength)) continue;
+    rows[crossing->key] = static_cast<int>(tables.tables.crossings.size());
+    tables.tables.crossings.push_back(row_of(*crossing, arclength, units));
   }
   return rows;
 }
