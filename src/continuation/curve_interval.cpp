@@ -63,7 +63,6 @@ CurveInterval::CurveInterval(const systems::System& system, const loop::Isotropy
   }
   _problem->resolve(_problem->resolution_for(cutoff, end.time_map, std::numeric_limits<int>::max()));
   for (std::size_t n = 0; n < loops.size(); ++n) _points.push_back({_problem->from_loop(loops[n]), known[n].position});
-  _known = _points.size();
   _first = last - 1;
   _last = last;
   _ends = {std::move(loops[_first]), std::move(loops[_last])};
@@ -97,14 +96,6 @@ std::optional<CurvePoint> CurveInterval::at(double position, bool with_tangent) 
     _state.factor_point.clear();
   }
   return found;
-}
-
-void CurveInterval::forget_found(double behind) {
-  const auto found = _points.begin() + static_cast<std::ptrdiff_t>(_known);
-  _points.erase(
-      std::remove_if(found, _points.end(), [behind](const TracePoint& point) { return point.parameter > behind; }),
-      _points.end());
-  std::erase_if(_found, [behind](const CurvePoint& point) { return point.position > behind; });
 }
 
 CurvePoint CurveInterval::taken(double position, Trial trial, bool with_tangent) {

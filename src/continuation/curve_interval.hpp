@@ -21,9 +21,6 @@ class CurveInterval {
   /// None where the corrector fails. The tangent is left empty unless asked for.
   [[nodiscard]] std::optional<CurvePoint> at(double position, bool with_tangent);
 
-  /// Of FamilyCurve.
-  void forget_found(double behind);
-
  private:
   [[nodiscard]] std::optional<Trial> solve(double position);
   /// Orbits on the way stay among the points where it leads to one.
@@ -42,7 +39,6 @@ class CurveInterval {
   ProblemState _state;
   std::unique_ptr<PointProblem> _problem;
   std::vector<TracePoint> _points;  // known and found
-  std::size_t _known = 0;           // of them
   std::size_t _first = 0;           // of the interval, among the points
   std::size_t _last = 0;
   std::array<loop::Loop, 2> _ends;  // under the interval's time map

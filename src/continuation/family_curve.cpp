@@ -34,9 +34,7 @@ void FamilyCurve::drop_behind(double position) {
   _intervals.clear();
 }
 
-void FamilyCurve::forget_found(double behind) {
-  for (const auto& [last, interval] : _intervals) interval->forget_found(behind);
-}
+void FamilyCurve::forget_found() { _intervals.clear(); }
 
 std::size_t FamilyCurve::interval_of(double position) const {
   core::require(_known.size() >= 2 && position >= _known.front().position && position <= _known.back().position,

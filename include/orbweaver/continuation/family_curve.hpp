@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -47,9 +46,8 @@ class FamilyCurve {
   /// Known orbits behind a position are no longer known.
   void drop_behind(double position);
 
-  /// Forgets the orbits found in between behind a position, which later ones are sought from: without one as after
-  /// `add`. One that turns out to be another family's leads to more of those.
-  void forget_found(double behind = -std::numeric_limits<double>::infinity());
+  /// Forgets the orbits found in between, which later ones are sought from: as after `add`.
+  void forget_found();
 
   /// Called before every orbit that is sought, some milliseconds apart; may throw.
   void before_each(std::function<void()> call) { _before_each = std::move(call); }

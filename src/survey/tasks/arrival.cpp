@@ -145,7 +145,6 @@ std::optional<Arrival> arrival_by(const systems::System& system, continuation::F
     const double size = point ? watch.relative_size(gain, from.loop, point->loop) : 0.0;
     if (size < slipped) {  // so has `to`, or none converges there; the meeting point may lie nearer
       slipped_at = there;
-      family.forget_found(before.position);
       beyond = {before.position + nearer * (there - before.position), 0.0};
       continue;
     }
@@ -244,7 +243,6 @@ bool add_places(Arrival& arrival, continuation::FamilyCurve& family, const bifur
     if (turns || !(part > slipped)) {
       meeting = place;
       if (point) beyond = place;
-      family.forget_found(before.position);
       continue;
     }
     const Place here{place, part};
