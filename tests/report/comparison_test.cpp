@@ -291,7 +291,7 @@ TEST(Comparison, TheWorstOrbitIsNamed) {
                                          }));
   std::string all;
   for (const report::Difference& difference : comparison.differences) all += difference.text + "\n";
-  EXPECT_THAT(all, HasSubstr("orbits of B lie off the curve of the other: energy or parameter at T = 6.9,"));
+  EXPECT_THAT(all, HasSubstr("orbits of B lie off the curve of the other: action at T = 6.9,"));
 }
 
 TEST(Comparison, FamiliesHaveAnIsotropy) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "orbweaver/numerics/lagrange.hpp"
 
@@ -11,13 +12,14 @@ namespace orbweaver::survey {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::array<Invariant, 3> variables{Invariant::period, Invariant::level, Invariant::energy};
 /// Nodes on either side of a segment: degree five is the highest that noise of 1e-10 does not spoil at uneven
 /// distances.
 constexpr std::size_t widest = 3;
 constexpr std::size_t nearby = 4;          // segments on either side of the last place
 constexpr std::size_t most_failures = 64;  // searches of a whole curve: more orbits off it tell nothing new
-/// Both orbits have errors.
-constexpr double errors_of_both = 2.0;
+/// Both orbits have errors, and that of the variable moves the place by as much again.
+constexpr double errors_of_both = 3.0;
 /// Of the difference between two polynomials, where neighbours are far apart.
 constexpr double safety = 3.0;
 /// Of the change between two neighbours: what a straight line between them may be off where nothing says more.
@@ -36,29 +38,20 @@ Window window_around(std::size_t segment, std::size_t count, std::size_t points)
   return {std::min(first, points - count), count};
 }
 
-struct Interpolated {
-  double value = 0.0;
-  double slope = 0.0;
-};
-
 /// `of`: what is interpolated, as a function of the invariant.
 template <class Of>
-Interpolated interpolated(const std::vector<Invariants>& points, const Window& window, Invariant variable,
-                          Invariant value, double at, const Of& of) {
+double interpolated(const std::vector<Invariants>& points, const Window& window, Invariant variable, Invariant value,
+                    double at, const Of& of) {
   std::vector<double> nodes;
   for (std::size_t n = 0; n < window.count; ++n) nodes.push_back(points[window.first + n].value(variable));
-  const numerics::LagrangeWeights weights = numerics::lagrange_weights(nodes, at);
-  Interpolated sum;
-  for (std::size_t n = 0; n < window.count; ++n) {
-    const double known = of(points[window.first + n].value(value));
-    sum.value += weights.value[n] * known;
-    sum.slope += weights.slope[n] * known;
-  }
+  const std::vector<double> weights = numerics::lagrange_weights(nodes, at).value;
+  double sum = 0.0;
+  for (std::size_t n = 0; n < window.count; ++n) sum += weights[n] * of(points[window.first + n].value(value));
   return sum;
 }
 
-Interpolated interpolated(const std::vector<Invariants>& points, const Window& window, Invariant variable,
-                          Invariant value, double at) {
+double interpolated(const std::vector<Invariants>& points, const Window& window, Invariant variable, Invariant value,
+                    double at) {
   return interpolated(points, window, variable, value, at, [](double x) { return x; });
 }
 
@@ -69,13 +62,30 @@ bool is_monotone(const std::vector<Invariants>& points, const Window& window, In
   return true;
 }
 
+// The variable that tells best where between the two nodes an orbit lies.
+std::optional<Invariant> best_variable(const std::vector<Invariants>& points, const Window& window,
+                                       std::size_t segment) {
+  std::optional<Invariant> best;
+  double most = 0.0;
+  for (const Invariant variable : variables) {
+    if (!is_monotone(points, window, variable)) continue;
+    const double change = std::abs(points[segment + 1].value(variable) - points[segment].value(variable)) /
+                          points[segment].floor_of(variable);
+    if (change > most) {
+      most = change;
+      best = variable;
+    }
+  }
+  return best;
+}
+
 // Single differences vanish here and there; all of them do not.
 double error_of(const std::vector<Invariants>& points, const Window& window, std::size_t segment, Invariant variable,
                 Invariant value, double at, double best) {
   double error = 0.0;
   for (const Window& smaller : {window_around(segment, window.count - 2, points.size()),
                                 Window{window.first, window.count - 1}, Window{window.first + 1, window.count - 1}})
-    error = std::fmax(error, std::abs(best - interpolated(points, smaller, variable, value, at).value));
+    error = std::fmax(error, std::abs(best - interpolated(points, smaller, variable, value, at)));
   return safety * error;
 }
 
@@ -84,7 +94,7 @@ double error_of(const std::vector<Invariants>& points, const Window& window, std
 double error_of_trace(const std::vector<Invariants>& points, const Window& window, Invariant variable, double at,
                       double trace) {
   const double values =
-      interpolated(points, window, variable, Invariant::trace, at, [](double x) { return std::sinh(x); }).value;
+      interpolated(points, window, variable, Invariant::trace, at, [](double x) { return std::sinh(x); });
   return std::abs(std::asinh(values) - trace);
 }
 
@@ -98,8 +108,9 @@ bool is_between(double from, double to, double value, double margin) {
   return value >= std::min(from, to) - margin && value <= std::max(from, to) + margin;
 }
 
-void add_deviation(CurveFit& fit, Invariant invariant, double deviation, double allowed, const Invariants& x) {
+void add_deviation(CurveFit& fit, Invariant invariant, double deviation, double error, const Invariants& x) {
   if (std::isnan(deviation)) return;
+  const double allowed = errors_of_both * x.floor_of(invariant) + error;
   const double excess = deviation / allowed;
   if (!(excess >= fit.excess)) return;
   fit.excess = excess;
@@ -108,67 +119,49 @@ void add_deviation(CurveFit& fit, Invariant invariant, double deviation, double 
   fit.allowed = allowed / x.scale_of(invariant);
 }
 
-// Of places where it fits the one that is known best: a wide one allows what lies elsewhere.
-CurveFit better(const CurveFit& a, const CurveFit& b) {
-  if (a.fits() && b.fits()) return b.width < a.width ? b : a;
-  return b.excess < a.excess ? b : a;
-}
+CurveFit better(const CurveFit& a, const CurveFit& b) { return b.excess < a.excess ? b : a; }
 
 CurveFit nowhere() {
   CurveFit fit;
   fit.excess = infinity;
-  fit.width = infinity;
-  return fit;
-}
-
-CurveFit fit_by(const std::vector<Invariants>& points, const Invariants& x, std::size_t segment, const Window& window,
-                Invariant variable) {
-  const Invariants& a = points[segment];
-  const Invariants& b = points[segment + 1];
-  const double at = x.value(variable);
-  if (!is_between(a.value(variable), b.value(variable), at, errors_of_both * x.floor_of(variable))) return nowhere();
-  CurveFit fit;
-  fit.segment = segment;
-  fit.measured = true;
-  for (const Invariant invariant : all_invariants) {
-    if (invariant == variable) continue;
-    const auto [value, slope] = interpolated(points, window, variable, invariant, at);
-    double error = window.count > 2 ? error_of(points, window, segment, variable, invariant, at, value)
-                                    : error_of_chord(a, b, variable, invariant, at);
-    if (invariant == Invariant::trace) error = std::fmax(error, error_of_trace(points, window, variable, at, value));
-    if (std::isnan(error)) continue;
-    // An error of the variable moves the place.
-    const double floor = x.floor_of(invariant) + std::abs(slope) * x.floor_of(variable);
-    const double allowed = errors_of_both * floor + error;
-    fit.measured = fit.measured && error <= floor;
-    fit.width = std::fmax(fit.width, allowed / x.scale_of(invariant));
-    add_deviation(fit, invariant, std::abs(value - x.value(invariant)), allowed, x);
-  }
   return fit;
 }
 
 }  // namespace
 
 CurveFit InvariantCurve::fit_beside(const Invariants& x, std::size_t segment) const {
-  CurveFit best = nowhere();
-  for (std::size_t reach = widest; reach >= 1 && (reach > 1 || std::isinf(best.excess)); --reach) {
+  for (std::size_t reach = widest; reach >= 1; --reach) {
     const Window window = window_around(segment, 2 * reach, _points.size());
-    for (const Invariant variable : all_invariants) {
-      if (!is_monotone(_points, window, variable)) continue;
-      const CurveFit fit = fit_by(_points, x, segment, window, variable);
-      // What a chord is off by is not known, and says nothing of the variable.
-      if (window.count > 2 ? fit.width < best.width : fit.excess < best.excess) best = fit;
+    const std::optional<Invariant> variable = best_variable(_points, window, segment);
+    if (!variable) continue;
+    const Invariants& a = _points[segment];
+    const Invariants& b = _points[segment + 1];
+    const double at = x.value(*variable);
+    if (!is_between(a.value(*variable), b.value(*variable), at, errors_of_both * x.floor_of(*variable)))
+      return nowhere();
+    CurveFit fit;
+    fit.segment = segment;
+    fit.measured = true;
+    for (const Invariant invariant : all_invariants) {
+      if (invariant == *variable) continue;
+      const double value = interpolated(_points, window, *variable, invariant, at);
+      double error = window.count > 2 ? error_of(_points, window, segment, *variable, invariant, at, value)
+                                      : error_of_chord(a, b, *variable, invariant, at);
+      if (invariant == Invariant::trace)
+        error = std::fmax(error, error_of_trace(_points, window, *variable, at, value));
+      if (!std::isnan(error)) fit.measured = fit.measured && error <= x.floor_of(invariant);
+      add_deviation(fit, invariant, std::abs(value - x.value(invariant)), error, x);
     }
+    return fit;
   }
-  return best;
+  return nowhere();
 }
 
 CurveFit InvariantCurve::fit_at_point(const Invariants& x) const {
   CurveFit fit;
   fit.measured = true;
   for (const Invariant invariant : all_invariants)
-    add_deviation(fit, invariant, std::abs(_points.front().value(invariant) - x.value(invariant)),
-                  errors_of_both * x.floor_of(invariant), x);
+    add_deviation(fit, invariant, std::abs(_points.front().value(invariant) - x.value(invariant)), 0.0, x);
   return fit;
 }
 
@@ -187,7 +180,7 @@ CurveFit InvariantCurve::fit_anywhere(const Invariants& x) const {
   if (_points.size() == 1) return fit_at_point(x);
   CurveFit best = nowhere();
   for (std::size_t segment = 0; segment + 1 < _points.size(); ++segment) {
-    const bool may = std::any_of(all_invariants.begin(), all_invariants.end(), [&](Invariant v) {
+    const bool may = std::any_of(variables.begin(), variables.end(), [&](Invariant v) {
       return is_between(_points[segment].value(v), _points[segment + 1].value(v), x.value(v),
                         errors_of_both * x.floor_of(v));
     });

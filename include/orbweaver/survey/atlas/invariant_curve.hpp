@@ -31,7 +31,6 @@ struct CurveFit {
   Invariant worst = Invariant::period;
   double deviation = 0.0;   ///< of `worst`, relative to its scale
   double allowed = 0.0;     ///< the same
-  double width = 0.0;       ///< the most that is allowed of any number, relative
   std::size_t segment = 0;  ///< between nodes segment and segment + 1
   bool measured = false;    ///< at a place where deviations of the size of the floor would show
 
@@ -40,11 +39,10 @@ struct CurveFit {
 
 /// The curve through a family's orbits in the space of invariants.
 ///
-/// Beside each two neighbours one of the numbers is the variable, and the others are interpolated by polynomials
-/// through four or six orbits among which it is monotone. Their error is taken for the largest difference to
-/// polynomials of one or two orbits fewer, and what an error of the variable moves them by; of all variables the one
-/// counts with which it is least. Where none is monotone, the chord tells. No arclength is used: chords between orbits
-/// that lie elsewhere add up to another one.
+/// Beside each two neighbours the one among period, level and energy that changes most is the variable; the others
+/// are interpolated by polynomials through up to six orbits among which it is monotone. The error is taken for the
+/// largest difference to polynomials of one or two orbits fewer. No arclength is used: chords between orbits that lie
+/// elsewhere add up to another one.
 class InvariantCurve {
  public:
   InvariantCurve() = default;
