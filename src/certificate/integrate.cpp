@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -61,13 +62,10 @@ class Integration {
       derivative(_values.data(), _slopes.data());
       for (std::size_t j = 0; j < _ways.size(); ++j) choose_step(j);
       times_step(_slopes.data());
-      take_stages<odeint::rk78_coefficients_a1<>, odeint::rk78_coefficients_a2<>, odeint::rk78_coefficients_a3<>,
-                  odeint::rk78_coefficients_a4<>, odeint::rk78_coefficients_a5<>, odeint::rk78_coefficients_a6<>,
-                  odeint::rk78_coefficients_a7<>, odeint::rk78_coefficients_a8<>, odeint::rk78_coefficients_a9<>,
-                  odeint::rk78_coefficients_a10<>, odeint::rk78_coefficients_a11<>, odeint::rk78_coefficients_a12<>>();
-      sum<odeint::rk78_coefficients_b<>>(_values.data(), _at.data());
+      std::apply([this](const auto&... weights) { (stage(weights), ...); }, _stages);
+      sum(odeint::rk78_coefficients_b<>(), _values.data(), _at.data());
       std::fill(_error.begin(), _error.end(), 0.0);
-      sum<odeint::rk78_coefficients_db<>>(_error.data(), _error.data());
+      sum(odeint::rk78_coefficients_db<>(), _error.data(), _error.data());
       bool has_ended = false;
       for (std::size_t j = 0; j < _ways.size(); ++j) {
         take(j);
@@ -128,31 +126,24 @@ class Integration {
       for (std::size_t j = 0; j < nodes; ++j) f[i * nodes + j] *= _ways[j].step;
   }
 
-  /// from + the weighted sum of the first slopes.
+  /// from + the weighted sum of the first slopes. Weights of 0 are no exception: what is not finite shows.
   template <class Weights>
-  void sum(const double* from, double* to) const {
-    const auto terms = [&]<std::size_t... l>(std::index_sequence<l...>) {
-      const Weights weights;
-      const std::size_t size = _values.size();
-      const double* const k = _slopes.data();
-      for (std::size_t i = 0; i < size; ++i) {
-        double value = from[i];
-        // Weights are known to the compiler.
-        ((weights[l] != 0.0 ? void(value += weights[l] * k[l * size + i]) : void()), ...);
-        to[i] = value;
-      }
-    };
-    terms(std::make_index_sequence<Weights::static_size>());
+  void sum(const Weights& weights, const double* from, double* to) const {
+    const std::size_t size = _values.size();
+    const double* const k = _slopes.data();
+    for (std::size_t i = 0; i < size; ++i) {
+      double value = from[i];
+      for (std::size_t l = 0; l < Weights::static_size; ++l) value += weights[l] * k[l * size + i];
+      to[i] = value;
+    }
   }
 
-  template <class... Weights>
-  void take_stages() {
-    const auto stage = [this](std::size_t number) {
-      double* const f = _slopes.data() + number * _values.size();
-      derivative(_at.data(), f);
-      times_step(f);
-    };
-    ((sum<Weights>(_values.data(), _at.data()), stage(Weights::static_size)), ...);
+  template <class Weights>
+  void stage(const Weights& weights) {
+    sum(weights, _values.data(), _at.data());
+    double* const f = _slopes.data() + Weights::static_size * _values.size();
+    derivative(_at.data(), f);
+    times_step(f);
   }
 
   /// What has ended goes with what it has come to, and the others close up.
@@ -216,7 +207,7 @@ class Integration {
     for (std::size_t at = j; at < _values.size(); at += nodes) {
       const double size = std::abs(_values[at]) + std::abs(_slopes[at]);
       error = std::max(error, std::abs(_error[at]) / (way.allowed + _tolerance * size));
-      sum += 0.0 * (_at[at] + _error[at]);  // 0 for finite numbers only
+      sum += 0.0 * _at[at];  // 0 for finite numbers only
     }
     if (sum != 0.0) {
       // A trial step may leave the domain where the orbit does not: only a state that no small step leaves is at fault.
@@ -246,6 +237,11 @@ class Integration {
   std::vector<double> _at;      // of the stage; then the end of the step
   std::vector<double> _error;
   std::vector<double> _jacobian;
+  std::tuple<odeint::rk78_coefficients_a1<>, odeint::rk78_coefficients_a2<>, odeint::rk78_coefficients_a3<>,
+             odeint::rk78_coefficients_a4<>, odeint::rk78_coefficients_a5<>, odeint::rk78_coefficients_a6<>,
+             odeint::rk78_coefficients_a7<>, odeint::rk78_coefficients_a8<>, odeint::rk78_coefficients_a9<>,
+             odeint::rk78_coefficients_a10<>, odeint::rk78_coefficients_a11<>, odeint::rk78_coefficients_a12<>>
+      _stages;
 };
 
 std::vector<std::vector<double>> all_values(std::vector<Arrival> arrivals) {
