@@ -10,7 +10,7 @@ if(NOT ROOT OR NOT LAYERS)
   message(FATAL_ERROR "expected -DROOT=<tree> and -DLAYERS=<layers in order, with commas between>")
 endif()
 string(REPLACE "," ";" LAYERS "${LAYERS}")
-set(CERTIFICATE_MAY_INCLUDE core model numerics systems taylor loop certificate)
+set(CERTIFICATE_MAY_INCLUDE core model ad numerics systems taylor loop certificate)
 set(fault_count 0)
 
 function(report where what)
