@@ -14,13 +14,13 @@
 #include "explained.hpp"
 #include "newton.hpp"
 #include "once_around.hpp"
+#include "orbweaver/model/rounded.hpp"
 #include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 #include "orbweaver/core/log/log_stage.hpp"
 #include "orbweaver/loop/curve/system_at.hpp"
 #include "orbweaver/loop/symmetry/symmetry_group.hpp"
 #include "orbweaver/model/evaluate.hpp"
-#include "orbweaver/model/rounded.hpp"
 #include "orbweaver/numerics/decompositions.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/taylor/flow.hpp"
@@ -95,7 +95,7 @@ class Certifier::Parts {
     conserved(found);
     for (const State& state : _states) found.reach = std::max(found.reach, norm(state));
     const OnceAround once =
-        once_around({_system, _states, _loop->period, found.reach, _options.tolerance}, _return, known_growth);
+        once_around({_system, _states, _loop->period, found.reach, _options.tolerance}, known_growth);
     found.single_shot = once.distance;
     found.displaced_growth = once.displaced_growth;
     found.symmetry_defect = symmetry_defect();
@@ -149,22 +149,19 @@ class Certifier::Parts {
     return out;
   }
 
-  /// At the ends of the segments, and, with all of them, once around.
-  [[nodiscard]] States runge_kutta_ends() {
-    std::vector<Journey> journeys;
-    for (const State& start : starts()) journeys.push_back({start, step()});
-    journeys.push_back({_states.front(), _loop->period});
-    std::vector<Arrival> arrivals = integrate(_system, journeys, _options.tolerance);
-    _return = std::move(arrivals.back());
-    States ends;
-    for (int m = 0; m < _segments; ++m) {
-      Arrival& arrival = arrivals[static_cast<std::size_t>(m)];
-      const double period = _loop->period * _system.scales().time;
-      if (!arrival.failure.empty())
-        throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
-                                               _segments, period, period * m / _segments, arrival.failure));
-      ends.push_back(std::move(arrival.values));
+  [[nodiscard]] States runge_kutta_ends() const {
+    try {
+      return integrate_together(_system, starts(), step(), _options.tolerance);
+    } catch (const core::NumericalError&) {  // one by one, to name it
     }
+    States ends;
+    for (int m = 0; m < _segments; ++m) try {
+        ends.push_back(integrate(_system, _states[static_cast<std::size_t>(m)], step(), _options.tolerance));
+      } catch (const core::NumericalError& error) {
+        const double period = _loop->period * _system.scales().time;
+        throw core::NumericalError(fmt::format("segment {} of {} of a loop with period {} (from t = {}): {}", m + 1,
+                                               _segments, period, period * m / _segments, error.what()));
+      }
     return ends;
   }
 
@@ -400,7 +397,6 @@ class Certifier::Parts {
   const loop::Loop* _loop = nullptr;
   States _states;                        // M + 1
   std::vector<Eigen::VectorXd> _fields;  // at these
-  Arrival _return;                       // of the first, after the period
   std::vector<Eigen::VectorXd> _gaps;    // M
   std::vector<Eigen::VectorXd> _taylor_gaps;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "explained.hpp"
+#include "orbweaver/certificate/integrate.hpp"
 #include "orbweaver/core/error.hpp"
 
 namespace orbweaver::certificate {
@@ -56,30 +57,29 @@ States displacements(const Trip& trip) {
 
 /// The most that a displacement of the first state has grown by T, where the orbit has come to `end`.
 double displaced_start(const Trip& trip, const State& end) {
-  States moved;
+  double largest = unknown;
   for (const State& direction : displacements(trip)) {
     const double length = norm(direction);
     if (!(length > 0.0)) continue;
-    State& state = moved.emplace_back(trip.states.front());
-    for (std::size_t i = 0; i < state.size(); ++i) state[i] += displaced * trip.reach / length * direction[i];
-  }
-  double largest = unknown;
-  for (const State& other : integrate_together(trip.system, moved, trip.period, trip.tolerance))
+    State moved = trip.states.front();
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += displaced * trip.reach / length * direction[i];
+    const State other = integrate(trip.system, moved, trip.period, trip.tolerance);
     largest = std::fmax(largest, distance(other, end) / (displaced * trip.reach));
+  }
   return largest;
 }
 
 }  // namespace
 
-OnceAround once_around(const Trip& trip, const Arrival& end, double known_growth) {
+OnceAround once_around(const Trip& trip, double known_growth) {
   OnceAround found;
-  if (!end.failure.empty()) return found;
   try {
-    found.distance = distance(end.values, trip.states.back());
+    const State end = integrate(trip.system, trip.states.front(), trip.period, trip.tolerance);
+    found.distance = distance(end, trip.states.back());
     // What is known may explain the return, or leave it open: other growth then decides nothing (verdict.cpp).
     const double known = far_return * std::fmax(1.0, known_growth);
     if (!(found.distance > known * trip.reach) || known >= nearby) return found;
-    const double largest = displaced_start(trip, end.values);
+    const double largest = displaced_start(trip, end);
     found.displaced_growth = largest;
     // Where this explains the return the way costs half a certificate for nothing.
     const double explained = far_return * trip.reach * (1.0 + std::fmax(largest, known_growth));

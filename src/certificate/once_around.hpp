@@ -1,7 +1,6 @@
 #pragma once
 
 #include "orbweaver/certificate/certificate.hpp"
-#include "orbweaver/certificate/integrate.hpp"
 #include "states.hpp"
 
 namespace orbweaver::certificate {
@@ -20,9 +19,9 @@ struct OnceAround {
   double displaced_growth = unknown;  ///< of an error on the way, where the return is far off
 };
 
-/// `end`: of the first state, after the period. NaN where the orbit is so unstable that the integration leaves the region where the system is defined. The growth is
+/// NaN where the orbit is so unstable that the integration leaves the region where the system is defined. The growth is
 /// that of integrations with steps of their own: what rounding grows to on the way counts too. `known_growth`: of
 /// multipliers, NaN where none are known.
-[[nodiscard]] OnceAround once_around(const Trip& trip, const Arrival& end, double known_growth);
+[[nodiscard]] OnceAround once_around(const Trip& trip, double known_growth);
 
 }  // namespace orbweaver::certificate

@@ -350,11 +350,13 @@ void BlockProgram::run(std::span<const double> scalars, std::size_t states, std:
   workspace.reserve(_registers);
   static const BlockKernel run_block = kernel();
   std::size_t j = 0;
-  double** const direct = workspace.direct(_inputs + _outputs, _registers);
-  for (std::size_t count = 0; (count = std::min(block, states - j)) > 0 && count % granule == 0; j += count) {
-    for (std::size_t i = 0; i < _inputs; ++i) direct[i] = const_cast<double*>(inputs[i]) + j;
-    for (std::size_t k = 0; k < _outputs; ++k) direct[_inputs + k] = outputs[k] + j;
-    run_block(_code.data(), _code.size(), direct, scalars.data(), count);
+  if (states >= block) {
+    double** const registers = workspace.direct(_inputs + _outputs, _registers);
+    for (; j + block <= states; j += block) {
+      for (std::size_t i = 0; i < _inputs; ++i) registers[i] = const_cast<double*>(inputs[i]) + j;
+      for (std::size_t k = 0; k < _outputs; ++k) registers[_inputs + k] = outputs[k] + j;
+      run_block(_code.data(), _code.size(), registers, scalars.data(), block);
+    }
   }
   if (j == states) return;
   double* const* const registers = workspace.own();

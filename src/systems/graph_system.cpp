@@ -7,6 +7,7 @@
 
 #include "linearized_formulas.hpp"
 #include "orbweaver/core/error.hpp"
+#include "orbweaver/model/block_program.hpp"
 #include "orbweaver/model/derivatives.hpp"
 #include "reduced_structure.hpp"
 
@@ -333,25 +334,19 @@ double GraphSystem::one(Kind kind, int number, std::span<const double> z) const 
 
 void GraphSystem::run(Kind kind, std::size_t number, std::size_t nodes, std::span<const double* const> in,
                       std::span<double* const> out) const {
-  const Ready& ready = this->ready(kind, number);
-  ready.program->run(ready.scalars, nodes, in, out);
+  _programs->program(kind, number).run(scalars_of(kind, number), nodes, in, out);
 }
 
 void GraphSystem::run_one(Kind kind, std::size_t number, const double* z,
                           std::initializer_list<std::span<double>> out) const {
-  const Ready& ready = this->ready(kind, number);
-  ready.program->run_one(ready.scalars, {z, size()}, out);
+  _programs->program(kind, number).run_one(scalars_of(kind, number), {z, size()}, out);
 }
 
-const GraphSystem::Ready& GraphSystem::ready(Kind kind, std::size_t number) const {
-  std::vector<Ready>& own = _ready[kind];
+const std::vector<double>& GraphSystem::scalars_of(Kind kind, std::size_t number) const {
+  std::vector<std::vector<double>>& own = _scalars_of[kind];
   if (own.size() <= number) own.resize(number + 1);
-  Ready& ready = own[number];
-  if (ready.program == nullptr) {
-    ready.program = &_programs->program(kind, number);
-    ready.scalars = ready.program->scalars(_values);
-  }
-  return ready;
+  if (own[number].empty()) own[number] = _programs->program(kind, number).scalars(_values);
+  return own[number];
 }
 
 std::shared_ptr<const GraphSystem> graph_system(const std::shared_ptr<const System>& system) {

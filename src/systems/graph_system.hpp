@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "orbweaver/model/block_program.hpp"
 #include "orbweaver/model/graph.hpp"
 #include "orbweaver/systems/formulas.hpp"
 #include "orbweaver/systems/quad_system.hpp"
@@ -83,11 +82,6 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
 
  private:
   class Programs;
-  /// A program with what it computes from the parameters alone.
-  struct Ready {
-    const model::BlockProgram* program = nullptr;
-    std::vector<double> scalars;
-  };
   enum Kind : std::size_t { rate, linear, second, action, quantity, gradient, guarded, by_parameter, kinds };
 
   GraphSystem(const GraphSystem& other, std::shared_ptr<const GraphSystem> whole, std::shared_ptr<const Frame> frame,
@@ -100,7 +94,7 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
   void run(Kind kind, std::size_t number, std::size_t nodes, std::span<const double* const> in,
            std::span<double* const> out) const;
   void run_one(Kind kind, std::size_t number, const double* z, std::initializer_list<std::span<double>> out) const;
-  [[nodiscard]] const Ready& ready(Kind kind, std::size_t number) const;
+  [[nodiscard]] const std::vector<double>& scalars_of(Kind kind, std::size_t number) const;
 
   std::shared_ptr<Programs> _programs;
   std::shared_ptr<const Frame> _frame;
@@ -110,7 +104,7 @@ class GraphSystem final : public System, public QuadSystem, public FormulaSystem
   std::map<std::string, double> _sizes;
   std::map<std::string, double> _parameters;
   FamilyScalars _scalars;
-  mutable std::array<std::vector<Ready>, kinds> _ready;
+  mutable std::array<std::vector<std::vector<double>>, kinds> _scalars_of;
 };
 
 /// Throws MisuseError for a system that is no such one.

@@ -14,7 +14,6 @@ class Decay final : public test::StatedSystem {
       : StatedSystem(test::structure_of(1), "decay"), _rate(rate), _wall(wall) {}
 
   void field(std::size_t nodes, const double* z, double* f) const override {
-    ++calls;
     for (std::size_t j = 0; j < nodes; ++j) f[j] = z[j] < _wall ? nan : -_rate * z[j];
   }
   void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
@@ -24,8 +23,6 @@ class Decay final : public test::StatedSystem {
   void second_derivatives(std::size_t nodes, const double*, const double*, double* contracted) const override {
     for (std::size_t j = 0; j < nodes; ++j) contracted[j] = 0.0;
   }
-
-  mutable int calls = 0;  ///< of the field
 
  private:
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();

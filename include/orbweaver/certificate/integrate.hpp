@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "orbweaver/systems/system.hpp"
@@ -22,22 +21,8 @@ namespace orbweaver::certificate {
 [[nodiscard]] std::vector<double> integrate(const systems::System& system, std::vector<double> state, double time,
                                             double tolerance);
 
-/// Where to integrate from, and for how long.
-struct Journey {
-  std::vector<double> state;
-  double time = 0.0;
-};
-struct Arrival {
-  std::vector<double> values;
-  std::string failure;  ///< what integrate throws; empty: none
-};
-
-/// The same of several, side by side, each with steps of its own: to the bit where each ends alone. The field is
-/// evaluated at all of them in one call.
-[[nodiscard]] std::vector<Arrival> integrate(const systems::System& system, const std::vector<Journey>& journeys,
-                                             double tolerance);
-
-/// The same over one time, where each has to arrive.
+/// The same for several states over one time, with common steps: as many at a time as a vector register holds, which
+/// the field is evaluated at together. Each ends where `integrate` would take it, within the tolerance.
 [[nodiscard]] std::vector<std::vector<double>> integrate_together(const systems::System& system,
                                                                   const std::vector<std::vector<double>>& states,
                                                                   double time, double tolerance);
