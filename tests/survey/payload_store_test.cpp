@@ -247,15 +247,13 @@ TEST_F(StoredSurvey, WhereNeitherCanBeUsedTheDamagedFilesAreNamed) {
   EXPECT_EQ(files_in(folder), before);
 }
 
-/// What the versions before wrote has payloads in the tasks, and is read as it is.
-TEST_F(StoredSurvey, ACheckpointOfTheVersionBeforeIsRead) {
+/// What the version before wrote has no model's text.
+TEST_F(StoredSurvey, ACheckpointOfTheVersionBeforeIsRefused) {
   const auto path = checkpoint_path(folder);
-  std::string old = bytes_of(path);
-  ASSERT_EQ(old[8], 5);
-  const std::string content = archive::read_sealed(path, {"ORBWCKP\x1a", 5});
-  archive::write_sealed(path, {"ORBWCKP\x1a", 4}, content);
+  const std::string content = archive::read_sealed(path, {"ORBWCKP\x1a", 6});
+  archive::write_sealed(path, {"ORBWCKP\x1a", 6}, content);
   EXPECT_EQ(read_checkpoint(path).unfinished, checkpoint.unfinished);
-  archive::write_sealed(path, {"ORBWCKP\x1a", 3}, content);
+  archive::write_sealed(path, {"ORBWCKP\x1a", 5}, content);
   EXPECT_THROW((void)read_checkpoint(path), core::InputError);
 }
 
