@@ -69,9 +69,10 @@ namespace orbweaver::test {
       });
 }
 
-[[nodiscard]] inline std::shared_ptr<const systems::System> moved_system(
+/// The same about another origin: dz/dt = f(z - offset).
+[[nodiscard]] inline std::shared_ptr<const systems::System> translated_system(
     const std::shared_ptr<const systems::System>& system, const Eigen::VectorXd& offset) {
-  return moved_system(system, {Eigen::MatrixXd::Identity(offset.size(), offset.size()), offset});
+  return moved_system(system, systems::AffineMap{Eigen::MatrixXd::Identity(offset.size(), offset.size()), offset});
 }
 
 }  // namespace orbweaver::test

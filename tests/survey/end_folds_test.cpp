@@ -139,7 +139,7 @@ survey::Summary far_even_well(const std::map<std::string, double>& parameters,
   all.insert(all.end(), overrides.begin(), overrides.end());
   const scene::Scene scene = scene::load(ORBWEAVER_SOURCE_DIR "/drivers/scenes/henon_heiles.yaml", all);
   const auto folder = test::fresh_folder("far_even_well", comm.get());
-  const auto far = test::moved_system(test::even_well(parameters), Eigen::Vector4d::Constant(1e5));
+  const auto far = test::translated_system(test::even_well(parameters), Eigen::Vector4d::Constant(1e5));
   survey::Summary summary = survey::run_survey(comm, scene, far, folder, {});
   EXPECT_TRUE(summary.failed_tasks.empty()) << testing::PrintToString(summary.failed_tasks);
   return summary;

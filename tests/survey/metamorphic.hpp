@@ -181,7 +181,7 @@ class Metamorphic : public testing::TestWithParam<std::size_t> {
   static std::shared_ptr<const systems::System> turned(const scene::Scene& scene, const Eigen::MatrixXd& turn,
                                                        double time = 1.0, double energy = 1.0) {
     return moved_system(systems::make_system(scene.system.name, scene.system.parameters, scene.system.effects),
-                        {turn, Eigen::VectorXd::Zero(turn.rows())}, time, energy);
+                        systems::AffineMap{turn, Eigen::VectorXd::Zero(turn.rows())}, time, energy);
   }
   core::Communicator comm;
 };

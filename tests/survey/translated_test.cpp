@@ -27,7 +27,7 @@ struct Pair {
 Pair surveys(const core::Communicator& comm, const std::string& name, const scene::Scene& here,
              const scene::Scene& there, const Eigen::VectorXd& offset) {
   const auto system = systems::make_system(here.system.name, here.system.parameters, here.system.effects);
-  const auto moved = test::moved_system(system, offset);
+  const auto moved = test::translated_system(system, offset);
   Pair out;
   out.here = test::run(comm, here, name);
   const auto folder = test::fresh_folder(name + "_moved" + std::to_string(comm.size()), comm.get());

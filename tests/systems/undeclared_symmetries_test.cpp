@@ -34,7 +34,7 @@ TEST(UndeclaredSymmetries, AreFound) {
 
 TEST(UndeclaredSymmetries, AreFoundAboutOtherPoints) {
   const Eigen::Vector4d offset(2.0, 0.0, -1.0, 0.5);
-  const auto moved = test::moved_system(test::magnetic_well({{"b", 0.0}}), offset);
+  const auto moved = test::translated_system(test::magnetic_well({{"b", 0.0}}), offset);
   EXPECT_THAT(undeclared_symmetries(*moved, {{5.0, 5.0, 5.0, 5.0}, {2.0, 0.0, -1.0, 0.5}}),
               ElementsAre("the reversor (x, y, px, py) -> (x, y, -2 - px, 1 - py)"));
 }
@@ -67,7 +67,7 @@ TEST(UndeclaredSymmetries, AreTurnsAboutAnAxis) {
   for (const char* cubic : {"a1", "a2", "a3", "a4"}) well[cubic] = 0.0;
   EXPECT_THAT(undeclared_turns(*test::magnetic_well(well), origin), ElementsAre("x", "y", "px", "py"));
   const Eigen::Vector4d offset(2.0, 0.0, -1.0, 0.5);
-  const auto moved = test::moved_system(test::magnetic_well(well), offset);
+  const auto moved = test::translated_system(test::magnetic_well(well), offset);
   EXPECT_THAT(undeclared_turns(*moved, origin), IsEmpty());
   EXPECT_THAT(undeclared_turns(*moved, {{2.0, 0.0, -1.0, 0.5}}), ElementsAre("x", "y", "px", "py"));
   for (const char* name : {"k1", "a1", "c", "e"}) {
