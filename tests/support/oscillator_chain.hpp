@@ -11,16 +11,17 @@ namespace orbweaver::test {
 
 /// A chain of N particles on cubic springs, fixed at both ends:
 ///
-///   H = sum_i p_i^2 / 2 + sum_i (q_i^2 / 2 + q_i^4 / 4) + sum_i (c d_i^2 / 2 + d_i^4 / 4),   d_i = q_(i+1) - q_i,
+///   H = sum_i p_i^2 / 2 + sum_i (q_i^2 / 2 + k q_i^4 / 4) + sum_i (c d_i^2 / 2 + k d_i^4 / 4),   d_i = q_(i+1) - q_i,
 ///
-/// i = 0 .. N with q_0 = q_(N+1) = 0 in the last sum; c the coupling. State q_1 .. q_N, p_1 .. p_N: dimension 2 N.
+/// i = 0 .. N with q_0 = q_(N+1) = 0 in the last sum; c the coupling, k the cubic one. State q_1 .. q_N, p_1 .. p_N: dimension 2 N.
 /// Small oscillations have the frequencies sqrt(1 + 4 c sin(k pi / (2 N + 2))^2), k = 1 .. N.
 class OscillatorChain : public StatedSystem {
  public:
-  explicit OscillatorChain(int particles, double coupling = 0.1)
+  explicit OscillatorChain(int particles, double coupling = 0.1, double cubic = 1.0)
       : StatedSystem(describe(particles), "oscillator_chain"),
         _n(static_cast<std::size_t>(particles)),
-        _coupling(coupling) {}
+        _coupling(coupling),
+        _cubic(cubic) {}
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     for (std::size_t i = 0; i < _n; ++i)
@@ -29,7 +30,7 @@ class OscillatorChain : public StatedSystem {
         const double left = q - (i > 0 ? z[(i - 1) * nodes + j] : 0.0);
         const double right = (i + 1 < _n ? z[(i + 1) * nodes + j] : 0.0) - q;
         f[i * nodes + j] = z[(_n + i) * nodes + j];
-        f[(_n + i) * nodes + j] = -q - q * q * q + force(right) - force(left);
+        f[(_n + i) * nodes + j] = -q - _cubic * q * q * q + force(right) - force(left);
       }
   }
   void field_jacobian(std::size_t nodes, const double* z, double* f, double* jacobian) const override {
@@ -45,7 +46,7 @@ class OscillatorChain : public StatedSystem {
         const double left = q - (i > 0 ? z[(i - 1) * nodes + j] : 0.0);
         const double right = (i + 1 < _n ? z[(i + 1) * nodes + j] : 0.0) - q;
         entry(i, _n + i) = 1.0;
-        entry(_n + i, i) = -1.0 - 3.0 * q * q - stiffness(right) - stiffness(left);
+        entry(_n + i, i) = -1.0 - 3.0 * _cubic * q * q - stiffness(right) - stiffness(left);
         if (i > 0) entry(_n + i, i - 1) = stiffness(left);
         if (i + 1 < _n) entry(_n + i, i + 1) = stiffness(right);
       }
@@ -63,10 +64,10 @@ class OscillatorChain : public StatedSystem {
         const auto weight = [&](std::size_t k) { return weights[(_n + k) * nodes + j]; };
         const bool has_left = i > 0;
         const bool has_right = i < _n;
-        if (has_right) entry(i, i) += -6.0 * at(i) * weight(i);
+        if (has_right) entry(i, i) += -6.0 * _cubic * at(i) * weight(i);
         const double stretch = (has_right ? at(i) : 0.0) - (has_left ? at(i - 1) : 0.0);
         // Force on the left particle is force(stretch), on the right one its opposite.
-        const double bend = 6.0 * stretch * ((has_left ? weight(i - 1) : 0.0) - (has_right ? weight(i) : 0.0));
+        const double bend = 6.0 * _cubic * stretch * ((has_left ? weight(i - 1) : 0.0) - (has_right ? weight(i) : 0.0));
         if (has_left) entry(i - 1, i - 1) += bend;
         if (has_right) entry(i, i) += bend;
         if (has_left && has_right) {
@@ -80,8 +81,8 @@ class OscillatorChain : public StatedSystem {
     for (std::size_t i = 0; i <= _n; ++i) {
       const double q = i < _n ? z[i] : 0.0;
       const double stretch = q - (i > 0 ? z[i - 1] : 0.0);
-      sum += 0.5 * _coupling * stretch * stretch + 0.25 * stretch * stretch * stretch * stretch;
-      sum += 0.5 * q * q + 0.25 * q * q * q * q + (i < _n ? 0.5 * z[_n + i] * z[_n + i] : 0.0);
+      sum += 0.5 * _coupling * stretch * stretch + 0.25 * _cubic * stretch * stretch * stretch * stretch;
+      sum += 0.5 * q * q + 0.25 * _cubic * q * q * q * q + (i < _n ? 0.5 * z[_n + i] * z[_n + i] : 0.0);
     }
     return sum;
   }
@@ -100,8 +101,10 @@ class OscillatorChain : public StatedSystem {
   }
 
  private:
-  [[nodiscard]] double force(double stretch) const { return _coupling * stretch + stretch * stretch * stretch; }
-  [[nodiscard]] double stiffness(double stretch) const { return _coupling + 3.0 * stretch * stretch; }
+  [[nodiscard]] double force(double stretch) const {
+    return _coupling * stretch + _cubic * stretch * stretch * stretch;
+  }
+  [[nodiscard]] double stiffness(double stretch) const { return _coupling + 3.0 * _cubic * stretch * stretch; }
 
   static systems::Structure describe(int particles) {
     systems::Structure structure = structure_of(2 * particles, true, true);
@@ -115,6 +118,7 @@ class OscillatorChain : public StatedSystem {
 
   std::size_t _n;
   double _coupling;
+  double _cubic;
 };
 
 }  // namespace orbweaver::test

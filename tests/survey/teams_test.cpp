@@ -28,6 +28,9 @@ using ::testing::Not;
 
 int team_size(const core::Communicator& comm) { return comm.size() == 5 ? 2 : comm.size() - 1; }
 
+/// The cubic force with which the weakly coupled chain has the scales 1.
+constexpr double in_scales = 0.25;
+
 /// A chain of four particles, dimension 8: its four families, of a few orbits each. The scene's own system is not used.
 /// By newton-krylov, which a team divides; collocation is done by each member alone.
 scene::Scene chain_scene(int team, const std::vector<std::string>& more = {}) {
@@ -49,22 +52,25 @@ survey::Summary run(const core::Communicator& comm, const scene::Scene& scene, c
   return survey::run_survey(comm, scene, system, folder, {});
 }
 
-std::shared_ptr<const systems::System> chain() { return std::make_shared<const test::OscillatorChain>(4); }
+std::shared_ptr<const systems::System> chain() {
+  return std::make_shared<const test::OscillatorChain>(4, 0.1, in_scales);
+}
 
 /// A chain whose field is spoilt where a particle is far out (unless a single state is asked for).
 class SpoiltChain final : public test::OscillatorChain {
  public:
-  explicit SpoiltChain(std::function<void(double& f)> spoil, double coupling = 0.1)
-      : OscillatorChain(4, coupling), _spoil(std::move(spoil)) {}
+  explicit SpoiltChain(std::function<void(double& f)> spoil, double coupling = 0.1, double cubic = in_scales)
+      : OscillatorChain(4, coupling, cubic), _spoil(std::move(spoil)), _far_out(0.4 / std::sqrt(cubic)) {}
 
   void field(std::size_t nodes, const double* z, double* f) const override {
     OscillatorChain::field(nodes, z, f);
     for (std::size_t n = 0; n < 4 * nodes && nodes > 1; ++n)
-      if (std::abs(z[n]) > 0.4) _spoil(f[4 * nodes + n]);
+      if (std::abs(z[n]) > _far_out) _spoil(f[4 * nodes + n]);
   }
 
  private:
   std::function<void(double& f)> _spoil;
+  double _far_out;
 };
 
 /// The last member of each team, or its leader.
@@ -289,7 +295,8 @@ TEST(Teams, AFollowerThatThrowsFailsTheTaskForAll) {
   const auto spoil = [&](double&) {
     if (is_last(comm) && ++calls % 997 == 0) throw std::runtime_error("no memory on this rank");
   };
-  const auto summary = run(comm, strong_scene(comm), "follower_throws", std::make_shared<SpoiltChain>(spoil, strong));
+  const auto summary =
+      run(comm, strong_scene(comm), "follower_throws", std::make_shared<SpoiltChain>(spoil, strong, 1.0));
   const std::string who = fmt::format("member {} of a team of {} failed", team_size(comm) - 1, team_size(comm));
   expect_most_failed(comm, summary, who);
   expect_most_failed(comm, summary, "no memory on this rank");
@@ -301,7 +308,8 @@ TEST(Teams, ALeaderThatThrowsFailsTheTaskForAll) {
   const auto spoil = [&](double&) {
     if (is_leader(comm) && ++calls % 1499 == 0) throw std::runtime_error("no memory on this rank");
   };
-  const auto summary = run(comm, strong_scene(comm), "leader_throws", std::make_shared<SpoiltChain>(spoil, strong));
+  const auto summary =
+      run(comm, strong_scene(comm), "leader_throws", std::make_shared<SpoiltChain>(spoil, strong, 1.0));
   expect_most_failed(comm, summary, "no memory on this rank");
 }
 
@@ -346,7 +354,7 @@ TEST(Teams, AFieldThatIsNotFiniteIsTheTasksFailureAndNotTheTeams) {
 TEST(Teams, AreDismissedWithTheErrorOfTheSurvey) {
   class NowhereAtRest final : public test::OscillatorChain {
    public:
-    NowhereAtRest() : OscillatorChain(4) {}
+    NowhereAtRest() : OscillatorChain(4, 0.1, in_scales) {}
     void field(std::size_t nodes, const double* z, double* f) const override {
       OscillatorChain::field(nodes, z, f);
       for (std::size_t j = 0; j < nodes; ++j) f[j] = 1.0;
