@@ -13,7 +13,8 @@ namespace orbweaver::test {
 ///
 ///   H = sum_i p_i^2 / 2 + sum_i (q_i^2 / 2 + k q_i^4 / 4) + sum_i (c d_i^2 / 2 + k d_i^4 / 4),   d_i = q_(i+1) - q_i,
 ///
-/// i = 0 .. N with q_0 = q_(N+1) = 0 in the last sum; c the coupling, k the cubic one. State q_1 .. q_N, p_1 .. p_N: dimension 2 N.
+/// i = 0 .. N with q_0 = q_(N+1) = 0 in the last sum; c the coupling, k the cubic one.
+/// State q_1 .. q_N, p_1 .. p_N: dimension 2 N.
 /// Small oscillations have the frequencies sqrt(1 + 4 c sin(k pi / (2 N + 2))^2), k = 1 .. N.
 class OscillatorChain : public StatedSystem {
  public:
