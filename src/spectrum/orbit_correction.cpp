@@ -160,7 +160,7 @@ OrbitCorrection correction_of(const Chain& chain, const FundamentalGroup& group,
   }
   correction.states.col(chain.segments()) = group.generator * correction.states.col(0);
   fill_between<D>(chain, links, correction);
-  // Where it is slower than there a shift is left, which on the whole loop is none.
+  // What is left of a shift of phase, in the mean over the whole loop.
   correction.states -= chain.fields * (chain.fields.cwiseProduct(correction.states).sum() / chain.fields.squaredNorm());
   return correction;
 }

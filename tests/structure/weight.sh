@@ -2,8 +2,8 @@
 # weight.sh ROOT: counts code lines (no comments, no blank ones) of src, include and the C++ of drivers, and the named numbers in them, by
 # which the program decides (constants with a number in their definition). Fails where there are more than the limits, which only fall.
 set -eu
-most_lines=72900
-most_numbers=1189
+most_lines=72765
+most_numbers=1187
 
 cd "$1"
 sources() { find src include drivers \( -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' \) -not -path '*/node_modules/*' -print0 | sort -z; }
